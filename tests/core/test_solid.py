@@ -212,7 +212,7 @@ def test_of_snapped_parts(name, otherwise):
             part = np.isin(np.arange(shape.face_count), hierarchy.faces(stop))
             snapped = creases.snap(part)
             first, last = int(hierarchy.tet_first[stop]), int(hierarchy.tet_last[stop])
-            solids = [hierarchy.solid_of_faces(*tets, snapped) for tets in ((first, last), (last, first))]
+            solids = [hierarchy.solid_of_slice(*tets, snapped) for tets in ((first, last), (last, first))]
             for solid, before in zip(solids, (hierarchy.solid(stop), hierarchy.rest(stop))):
                 check_solid(solid)
                 assert pieces(solid) <= pieces(before)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..mesh import Refused, arrays
 from ..mesh.assembly import MeshPlan
-from partwheel import Hierarchy, PartwheelError, Solid, Status, duplicates_within_shells
+from partwheel import Hierarchy, Solid, duplicates_within_shells
 
 
 class MappedSolid(NamedTuple):
@@ -23,27 +23,18 @@ class MappedSolid(NamedTuple):
 
 
 # Parameters of this module: tets is (first, last), a slice of the tetrahedra; or arrays of several; if first > last, all
-# tetrahedra but last to first - 1. faces (F,) bool: faces to have instead of the slice's own, see Hierarchy.solid_of_faces().
-
-
-def slice_solid(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None) -> Solid:
-    return hierarchy.solid_of_slice(*tets) if faces is None else hierarchy.solid_of_faces(*tets, faces)
+# tetrahedra but last to first - 1. faces (F,) bool: faces to have instead of the slice's own, see Hierarchy.solid_of_slice().
 
 
 def slice_solids(hierarchy: Hierarchy, slices: list[tuple], faces: np.ndarray | None) -> list[Solid | None]:
     """The solids of slices, matching where they meet; None for an empty one. faces: for a single slice only."""
-    return hierarchy.solids(slices) if len(slices) > 1 else [slice_solid(hierarchy, slices[0], faces)]
+    return hierarchy.solids(slices) if len(slices) > 1 else [hierarchy.solid_of_slice(*slices[0], faces)]
 
 
 def inner_facets(hierarchy: Hierarchy, tets: tuple, faces: np.ndarray | None) -> tuple[np.ndarray, np.ndarray] | None:
     """(vertices (n, 3), triangles (m, 3)) of the slice's inner facets, wound outward; None for an empty slice."""
-    try:
-        solid = slice_solid(hierarchy, tets, faces)
-    except PartwheelError as error:
-        if error.status != Status.EMPTY:
-            raise
-        return None
-    return solid.vertices, solid.triangles[solid.neighbor_tets >= 0]
+    solid = hierarchy.solids([tets], faces)[0]
+    return solid and (solid.vertices, solid.triangles[solid.neighbor_tets >= 0])
 
 
 def map_exact_solid(mesh: bpy.types.Mesh, hierarchy: Hierarchy, solid: Solid, standalone: bool) -> MappedSolid:

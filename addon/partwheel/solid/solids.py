@@ -38,7 +38,7 @@ def create_meshes(obj: bpy.types.Object, hierarchy: Hierarchy, slices: list[tupl
     """New meshes of the object's current one, one for each slice of tetrahedra (first, last), where both may be arrays
     (n,) of several slices. Caps match exactly, unless they are smooth. None for a slice without tetrahedra; also for one of
     several slices that has no faces and can't be a solid. faces (F,) bool: for a single slice, faces to have instead of its
-    own, see Hierarchy.solid_of_faces(). Raises PartwheelError."""
+    own, see Hierarchy.solid_of_slice(). Raises PartwheelError."""
     mesh = arrays.update_mesh(obj)
     is_exact = hierarchy.summary.is_exact
     if not is_exact:
@@ -66,7 +66,7 @@ def remove_from_mesh(obj: bpy.types.Object, hierarchy: Hierarchy, tets: tuple[in
     target, rest = obj.data, tets[::-1]
     check_no_multires(obj)
     if hierarchy.summary.is_exact:
-        solid = fitting.map_exact_solid(target, hierarchy, fitting.slice_solid(hierarchy, rest, faces), standalone=False)
+        solid = fitting.map_exact_solid(target, hierarchy, hierarchy.solid_of_slice(*rest, faces), standalone=False)
     else:
         solid = fitting.map_repaired_solids(target, hierarchy, [rest], options.smooth, faces, standalone=False)[0]
     new, normals = _create_closed_mesh(target, hierarchy, solid, rest, options, faces, False)

@@ -364,9 +364,6 @@ def part_shape(hierarchy: Hierarchy, node: int, positions: np.ndarray, matrix: n
                faces: Optional[np.ndarray] = None) -> Optional[PartShape]:
     """The PartShape of a node, with these positions (V, 3) of the hierarchy's vertices; matrix, size : see PartShape. None if
     cut polygons leave nothing of the node. faces : (F,) bool, source faces to use instead of its own, see
-    Hierarchy.solid_of_faces()"""
-    tets = hierarchy.tet_slice(node)
-    solid = hierarchy.solids([tets])[0] if faces is None else hierarchy.solid_of_faces(*tets, faces)
-    if solid is None:
-        return None
-    return PartShape(positions[solid.source_vertices], solid.triangles, solid.neighbor_tets >= 0, matrix, size)
+    Hierarchy.solid_of_slice()"""
+    solid = hierarchy.solids([hierarchy.tet_slice(node)], faces)[0]
+    return solid and PartShape(positions[solid.source_vertices], solid.triangles, solid.neighbor_tets >= 0, matrix, size)

@@ -484,43 +484,37 @@ class Hierarchy:
         (EMPTY) if the node then has no tetrahedra left."""
         return self.solid_of_slice(*self.tet_slice(node))
 
-    def solid_of_slice(self, tet_first: Any, tet_last: Any) -> Solid:
+    def solid_of_slice(self, tet_first: Any, tet_last: Any, inside: Optional[ArrayLike] = None) -> Solid:
         """The Solid around tetrahedra[tet_first:tet_last], such as a part of a cut.
 
         Parameters
         ----------
         tet_first, tet_last : the slice. If tet_first > tet_last, the rest: tetrahedra[tet_first:] and
             tetrahedra[:tet_last]. (n,) arrays: the union of disjoint slices
-        """
-        if np.ndim(tet_first):
-            slices = np.array([tet_first, tet_last], np.int32).T.copy()
-            return self._solid(load().pw_hierarchy_solid_of_slices, slices, len(slices))
-        return self._solid(load().pw_hierarchy_solid, _to_number(tet_first, "tet_first"), _to_number(tet_last, "tet_last"))
-
-    def solid_of_faces(self, tet_first: int, tet_last: int, inside: ArrayLike) -> Solid:
-        """The Solid of a slice with other source faces: see pw_hierarchy_solid_of_faces in partwheel.h.
-
-        Parameters
-        ----------
-        tet_first, tet_last : the slice, see solid_of_slice()
-        inside : (F,) bool, the source faces of the solid
+        inside : (F,) bool, the source faces to have instead of the slice's own: see pw_hierarchy_solid_of_faces in
+            partwheel.h; for a single slice
 
         Raises
         ------
         PartwheelError : no tetrahedra are left (EMPTY)
         ValueError : inside has another shape
         """
+        if np.ndim(tet_first):
+            slices = np.array([tet_first, tet_last], np.int32).T.copy()
+            return self._solid(load().pw_hierarchy_solid_of_slices, slices, len(slices))
+        bounds = _to_number(tet_first, "tet_first"), _to_number(tet_last, "tet_last")
+        if inside is None:
+            return self._solid(load().pw_hierarchy_solid, *bounds)
         inside = to_array(inside, "inside", bool, self.leaf.shape)
-        return self._solid(load().pw_hierarchy_solid_of_faces, _to_number(tet_first, "tet_first"),
-                           _to_number(tet_last, "tet_last"), inside, len(inside))
+        return self._solid(load().pw_hierarchy_solid_of_faces, *bounds, inside, len(inside))
 
-    def solids(self, slices: Iterable[Tuple[Any, Any]]) -> List[Optional[Solid]]:
+    def solids(self, slices: Iterable[Tuple[Any, Any]], inside: Optional[ArrayLike] = None) -> List[Optional[Solid]]:
         """The Solids of disjoint slices (tet_first, tet_last), see solid_of_slice(); None for a slice without
         tetrahedra. Two neighbors have the same triangles in their common cap."""
         result: List[Optional[Solid]] = []
         for bounds in slices:
             try:
-                result.append(self.solid_of_slice(*bounds))
+                result.append(self.solid_of_slice(*bounds, inside))
             except PartwheelError as error:
                 if error.status != Status.EMPTY:
                     raise
