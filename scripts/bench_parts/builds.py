@@ -24,7 +24,7 @@ sys.path[:0] = [str(ROOT / "native" / "python"), str(ROOT / "tests" / "reliabili
 import mutations  # noqa: E402
 import numpy as np  # noqa: E402
 from partwheel import FillMethod, Hierarchy, PartwheelError, meshes  # noqa: E402
-from partwheel.triangles import doubled_area_vectors  # noqa: E402
+from partwheel.triangles import triangle_areas  # noqa: E402
 from partwheel.worker import read_memory  # noqa: E402
 
 CLICKS = 200
@@ -88,7 +88,7 @@ def build(vertices, triangles, full_resolution):
 
 def click(vertices, triangles):
     """((F,) areas, (CLICKS,) random faces)"""
-    areas = np.linalg.norm(doubled_area_vectors(vertices[triangles]), axis=1)
+    areas = triangle_areas(vertices[triangles])
     return areas, np.random.default_rng(1).choice(len(areas), CLICKS, p=areas / areas.sum())
 
 

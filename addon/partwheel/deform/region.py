@@ -9,7 +9,7 @@ import numpy as np
 
 from partwheel.deform import FIXED, surface_distances
 from partwheel.joint import find_joint
-from partwheel.triangles import doubled_area_vectors
+from partwheel.triangles import triangle_areas
 from partwheel.weld import weld_surface
 from ..mesh import Refused, arrays
 
@@ -71,7 +71,7 @@ class Region:
         self.limb = np.flatnonzero((is_limb & is_free)[self.vertices])
         self.center = joint.center if joint else self.rest[self.free].mean(axis=0) if self.free.any() else np.zeros(3)
         corners = points[surface.triangles[is_triangle_inside]].astype(np.float64)
-        self.size = np.sqrt(np.linalg.norm(doubled_area_vectors(corners), axis=1).sum() / 2)
+        self.size = np.sqrt(triangle_areas(corners).sum())
         if not self.free.any():
             raise Refused("The part has no visible vertex inside its border: pick a larger one.")
         if self.free.all():

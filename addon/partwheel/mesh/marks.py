@@ -13,7 +13,7 @@ from mathutils import Matrix
 
 from partwheel.appearance import mean_by_opacity, sample_places, sample_texels, to_linear
 from partwheel.marks import Marks, find_face_pairs, marks_of_colors, marks_of_labels, mean_over_faces
-from partwheel.triangles import doubled_area_vectors
+from partwheel.triangles import triangle_areas
 from ..preferences import MARK_ITEMS, preferences
 from .elements import read, read_attribute, read_edge_vertices, read_positions
 
@@ -206,7 +206,7 @@ def _read_face_colors(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
             (*rows, offset), uvs = np.transpose(source.transform), read(layer.data, "uv", np.float32, 2)[loops[triangles]]
             coordinates = uvs @ rows + offset
             colors[triangles] *= _sample_image(source.image, places @ coordinates)
-    areas = np.linalg.norm(doubled_area_vectors(read_positions(mesh).astype(float)[vertices]), axis=1)
+    areas = triangle_areas(read_positions(mesh).astype(float)[vertices])
     return mean_over_faces(mean_by_opacity(colors), areas, faces)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from .library import Error
 from .requirements import load_module
-from .triangles import doubled_area_vectors
+from .triangles import doubled_area_vectors, unit_vectors
 
 CAP_COLOR = [0.6, 0.6, 0.6, 1.0]  # linear
 CAP_MATERIAL: Dict[str, Any] = {"name": "Partwheel Cap", "pbrMetallicRoughness": {
@@ -73,7 +73,7 @@ class Appearance(NamedTuple):
         attributes = {name: np.einsum("tck,tka->tca", weights, values[triangles]) for name, values in self.attributes.items()}
         for name, values in attributes.items():
             if name == "NORMAL":
-                values /= np.maximum(np.linalg.norm(values, axis=2, keepdims=True), 1e-300)
+                values[:] = unit_vectors(values)
             values[is_cap] = default_attribute(name, corners[is_cap])
         if not self.materials:  # nothing but colors
             if "COLOR_0" in attributes:
@@ -177,8 +177,7 @@ def barycentric(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
 def default_attribute(name: str, corners: np.ndarray) -> np.ndarray:
     """(m, 3, k) an attribute of triangles (m, 3, 3) that have none: the normal, white, or the origin of the texture."""
     if name == "NORMAL":
-        normals = doubled_area_vectors(corners)
-        return np.repeat((normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300))[:, None], 3, axis=1)
+        return np.repeat(unit_vectors(doubled_area_vectors(corners))[:, None], 3, axis=1)
     return np.ones((len(corners), 3, 4)) if name.startswith("COLOR") else np.zeros((len(corners), 3, 2))
 
 

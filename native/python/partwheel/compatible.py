@@ -19,7 +19,7 @@ import numpy as np
 from .components import triangle_components
 from .deform import affine, cross_matrix, orthonormal_pair, rotation_from_vector
 from .hierarchy import Hierarchy
-from .triangles import doubled_area_vectors, sample_triangles
+from .triangles import doubled_area_vectors, sample_triangles, triangle_areas, unit_vectors
 
 # Sampling
 SURFACE_SAMPLES = 800  # points on the surface of a part
@@ -114,18 +114,16 @@ class PartShape:
         corners = transform_points(vertices, matrix)[triangles] - self.main.center
         self.volume = abs(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
         cap_corners = corners[caps]
-        cap_areas = np.linalg.norm(doubled_area_vectors(cap_corners), axis=1)
-        self.cap_points = sample_triangles(cap_corners, cap_areas, CAP_SAMPLES)[0] + self.main.center
+        self.cap_points = sample_triangles(cap_corners, triangle_areas(cap_corners), CAP_SAMPLES)[0] + self.main.center
         outer = corners[~caps]
-        normals = doubled_area_vectors(outer)
-        if np.linalg.det(matrix[:3, :3]) < 0:
-            normals = -normals
-        doubled_areas = np.linalg.norm(normals, axis=1)
-        self.area = doubled_areas.sum() / 2
+        areas = triangle_areas(outer)
+        self.area = areas.sum()
         if self.area > 0:
-            self.points, sampled = sample_triangles(outer, doubled_areas, SURFACE_SAMPLES)
+            self.points, sampled = sample_triangles(outer, areas, SURFACE_SAMPLES)
             self.points += self.main.center
-            self.normals = normals[sampled] / doubled_areas[sampled, None]
+            self.normals = unit_vectors(doubled_area_vectors(outer[sampled]))
+            if np.linalg.det(matrix[:3, :3]) < 0:
+                self.normals = -self.normals
         self.relative_radius = self.main.radius / size
         self._features: Optional[np.ndarray] = None
 

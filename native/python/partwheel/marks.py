@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .components import components
-from .triangles import doubled_area_vectors
+from .triangles import triangle_areas
 from .weld import weld_coincident_vertices
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def marks_of_model(mesh: Mesh, kinds: Collection[str]) -> List[Marks]:
     labels = {kind: mesh.face_labels(kind) for kind in ("materials", "groups") if kind in kinds}
     marks = [marks_of_labels(pairs, values, kind) for kind, values in labels.items() if values is not None]
     if "colors" in kinds and look:
-        areas = np.linalg.norm(doubled_area_vectors(mesh.vertices[mesh.triangles]), axis=1) / 2
+        areas = triangle_areas(mesh.vertices[mesh.triangles])
         marks.append(marks_of_colors(pairs, *mean_over_faces(look.mean_colors(), areas, mesh.faces)))
     return [kind for kind in marks if np.size(kind.edges)]
 

@@ -15,6 +15,7 @@ from .contents import find_contents, read_header
 from .library import Error
 from .polygons import fan_or_ears, triangulate
 from .requirements import load_module
+from .triangles import unit_vectors
 from .weld import loose_parts
 
 # The units of 3MF files.
@@ -228,8 +229,7 @@ def _transformed_piece(scene: Any, matrix: np.ndarray, name: str) -> Optional[_P
         return _Piece(points, triangles, attributes, material)
     linear = matrix[:3, :3]
     if "NORMAL" in attributes:
-        normals = attributes["NORMAL"] @ np.linalg.pinv(linear)
-        attributes["NORMAL"] = normals / np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-300)
+        attributes["NORMAL"] = unit_vectors(attributes["NORMAL"] @ np.linalg.pinv(linear))
     if np.linalg.det(linear) < 0:  # mirrored
         triangles, attributes = triangles[:, ::-1], {name: values[:, ::-1] for name, values in attributes.items()}
     return _Piece(points @ linear.T + matrix[:3, 3], triangles, attributes, material)

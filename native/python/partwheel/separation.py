@@ -7,7 +7,7 @@ from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from .components import components, to_mask
-from .triangles import doubled_area_vectors
+from .triangles import doubled_area_vectors, triangle_areas
 
 STEP = 2.0 ** -19  # how far coincident vertices are moved apart, by the largest coordinate: 32 units of single precision
 MIN_THICKNESS = 1e-6  # a body whose volume is below this fraction of its area ** 1.5 counts as flat
@@ -142,7 +142,7 @@ def _remove_flat_bodies(points: np.ndarray, triangles: np.ndarray,
     body = components(len(points), np.vstack([triangles[:, :2], triangles[:, 1:]]))[triangles[:, 0]]
     _, first, body = np.unique(body, return_index=True, return_inverse=True)
     corners = points[triangles]
-    areas = np.bincount(body.ravel(), np.linalg.norm(doubled_area_vectors(corners), axis=1)) / 2
+    areas = np.bincount(body.ravel(), triangle_areas(corners))
     local = corners - points[triangles[first, 0]][body.ravel()][:, None]
     volumes = np.bincount(body.ravel(), np.einsum("ij,ij->i", local[:, 0], np.cross(local[:, 1], local[:, 2]))) / 6
     has_volume = abs(volumes) > MIN_THICKNESS * areas ** 1.5

@@ -17,6 +17,16 @@ def doubled_area_vectors(corners: np.ndarray) -> np.ndarray:
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
+def triangle_areas(corners: np.ndarray) -> np.ndarray:
+    """(T,) areas of triangles (T, 3, 3)."""
+    return np.linalg.norm(doubled_area_vectors(corners), axis=1) / 2
+
+
+def unit_vectors(vectors: np.ndarray) -> np.ndarray:
+    """(..., 3) vectors scaled to length 1; zeros stay."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
+
+
 def winding_number(corners: np.ndarray) -> float:
     """How often triangles, by their first, second and third corners (3, T, 3), wind around the origin: the sum of their solid
     angles (van Oosterom and Strackee 1983), by 4 pi. Not an integer if they have an open border."""
@@ -33,10 +43,10 @@ def second_moments(weights: np.ndarray, corners: np.ndarray) -> np.ndarray:
     return np.einsum("t,tki,tkj->ij", weights, corners, corners) + np.einsum("t,ti,tj->ij", weights, sums, sums)
 
 
-def sample_triangles(corners: np.ndarray, weights: np.ndarray, count: int) -> Tuple[np.ndarray, np.ndarray]:
-    """(points (count, 3), triangle of each (count,)), evenly distributed on triangles with corners (T, 3, 3) in the ratio of
-    weights (T,), say areas; from a low-discrepancy sequence, the same ones at every call."""
-    total = np.cumsum(weights)
+def sample_triangles(corners: np.ndarray, areas: np.ndarray, count: int) -> Tuple[np.ndarray, np.ndarray]:
+    """(points (count, 3), triangle of each (count,)), evenly distributed on triangles with corners (T, 3, 3) and
+    areas (T,), from a low-discrepancy sequence, the same ones at every call."""
+    total = np.cumsum(areas)
     number = np.arange(count)
     sampled = np.minimum(np.searchsorted(total, (number + 0.5) / count * total[-1]), len(corners) - 1)
     # The R2 sequence, by powers of the plastic number (Roberts 2018), folded into the triangle.

@@ -5,8 +5,9 @@ from .bones import Bone, bones
 from .borders import ParentLink, PartBorder, VertexWeights, link_parts, part_borders, part_tree, skin_weights
 from .colors import colors
 from .cut import Cut, CutError, CutPart
-from .names import mirror_planes, name_parts
+from .names import mirror_planes, name_parts, reflect
 from .seams import refine_seams, seams
 
 __all__ = ["Bone", "Cut", "CutError", "CutPart", "ParentLink", "PartBorder", "VertexWeights", "bones", "colors",
-           "link_parts", "mirror_planes", "name_parts", "part_borders", "part_tree", "refine_seams", "seams", "skin_weights"]
+           "link_parts", "mirror_planes", "name_parts", "part_borders", "part_tree", "refine_seams", "reflect",
+           "seams", "skin_weights"]

@@ -7,7 +7,7 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from ..triangles import doubled_area_vectors
+from ..triangles import doubled_area_vectors, unit_vectors
 
 DISTANCE = 5.0  # between two pieces
 FLATNESS = 0.01  # largest distance from the bed of a triangle that lies on it
@@ -59,8 +59,7 @@ def _candidate_rotations(vertices: np.ndarray, manifold: Any) -> Iterator[np.nda
     along x and one along y."""
     mesh = manifold.Manifold.hull_points(vertices).to_mesh64()
     normals = doubled_area_vectors(np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)])
-    areas = np.linalg.norm(normals, axis=1)
-    _, side = np.unique((normals / np.maximum(areas, 1e-300)[:, None]).round(3), axis=0, return_inverse=True)
+    _, side = np.unique(unit_vectors(normals).round(3), axis=0, return_inverse=True)
     sums = np.array([np.bincount(side.ravel(), column) for column in normals.T]).T
     for down in sums[np.argsort(-np.linalg.norm(sums, axis=1))[:MAX_SIDES]]:
         z = -down / np.linalg.norm(down)

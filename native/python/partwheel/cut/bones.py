@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..deform import surface_distances
-from ..triangles import doubled_area_vectors, second_moments
+from ..triangles import second_moments, triangle_areas
 from ..weld import weld_surface
 from .borders import ParentLink, PartBorder, VertexWeights, parents_first
 
@@ -145,7 +145,7 @@ class _PartSurface:
         self.old_to_new = {vertex: number for number, vertex in enumerate(old_vertices.tolist())}
         self.vertices, self.triangles = vertices[old_vertices], self.triangles.reshape(-1, 3)
         self.corners = self.vertices[self.triangles]
-        self.areas = np.linalg.norm(doubled_area_vectors(self.corners), axis=1) + 1e-300
+        self.areas = triangle_areas(self.corners) + 1e-300
         self.center = np.average(self.corners.mean(axis=1), axis=0, weights=self.areas)
 
     def extreme(self, start: np.ndarray, direction: np.ndarray) -> np.ndarray:

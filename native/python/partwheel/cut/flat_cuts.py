@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..components import components, triangle_components
 from ..deform import orthonormal_pair
-from ..triangles import doubled_area_vectors
+from ..triangles import doubled_area_vectors, triangle_areas
 
 KERF = 2e-5  # mm, far below a printer's precision
 # Margins of the plate around the section, in radii of the border; the first that cuts nothing else is used.
@@ -186,9 +186,9 @@ class FlatCutter:
     def areas(self, body: Any) -> np.ndarray:
         """(parts,) the area of each part on a body's surface."""
         vertices, triangles, ids = read_body(body)
-        area = np.linalg.norm(doubled_area_vectors(vertices[triangles]), axis=1)
         is_source = ids < self.triangle_count
-        return np.bincount(self.labels[ids[is_source]], area[is_source] / 2, minlength=self.labels.max() + 1)
+        return np.bincount(self.labels[ids[is_source]], triangle_areas(vertices[triangles[is_source]]),
+                           minlength=self.labels.max() + 1)
 
     def sides(self, body: Any, number: int) -> Tuple[bool, bool]:
         """(whether the body has caps of a cut that face along the plane's normal, whether against it)"""

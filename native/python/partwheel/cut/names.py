@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..hierarchy import to_mesh_view
 from ..library import check, load
-from ..triangles import doubled_area_vectors, nearest_targets, sample_triangles, second_moments
+from ..triangles import nearest_targets, sample_triangles, second_moments, triangle_areas
 from .cut import Cut
 
 if TYPE_CHECKING:
@@ -56,10 +56,15 @@ def mirror_planes(vertices: ArrayLike, triangles: ArrayLike) -> List[Tuple[np.nd
     return [(plane[:3].copy(), float(plane[3])) for plane in last[1]]
 
 
+def reflect(points: np.ndarray, normal: np.ndarray, offset: float) -> np.ndarray:
+    """The mirror images (n, 3) of points (n, 3) in a plane of mirror_planes()."""
+    return points - 2 * np.outer(points @ normal - offset, normal)
+
+
 def find_names(cut: Cut, mesh: Mesh) -> List[Optional[str]]:
     """For each part the name of the file's node, object or group that most of its area is of, if there are several, else
     of its material, if there are several; None without any."""
-    areas = np.linalg.norm(doubled_area_vectors(mesh.vertices[mesh.triangles]), axis=1)
+    areas = triangle_areas(mesh.vertices[mesh.triangles])
     sources = [(mesh.node_names, mesh.nodes)]
     if look := mesh.appearance:
         sources.append(([material.get("name") or "" for material in look.materials], look.face_materials))
@@ -106,7 +111,7 @@ def name_parts(cut: Cut, vertices: ArrayLike, triangles: ArrayLike, faces: np.nd
     vertices, triangles = np.asarray(vertices, np.float64), np.asarray(triangles)
     labels = cut.labels[faces]
     corners = vertices[triangles]
-    areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
+    areas = triangle_areas(corners)
     part_areas = np.bincount(labels, areas, len(cut))
     sizes = np.array([_log_sizes(corners[labels == part]) for part in range(len(cut))])
     centers = np.array([np.average(corners[labels == part].mean(axis=1), axis=0, weights=areas[labels == part] + 1e-300)
@@ -149,7 +154,7 @@ def mirror_images(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray
     ({part: its mirror image}, normal (3,) of the plane, toward the left). A part on both sides is its own image; a part
     without one is missing. ({}, zeros) if no plane pairs parts."""
     corners = np.asarray(vertices, np.float64)[triangles]
-    areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
+    areas = triangle_areas(corners)
     part_areas = np.bincount(labels, areas)
     points, sampled = sample_triangles(corners, areas, SAMPLE_COUNT)
     labels = labels[sampled]
@@ -157,8 +162,7 @@ def mirror_images(vertices: ArrayLike, triangles: np.ndarray, labels: np.ndarray
     best_area = 0.0
     for normal, offset in mirror_planes(vertices, triangles):
         votes = np.zeros((len(part_areas), len(part_areas)))  # (part, part of the mirrored point)
-        reflected = points - 2 * np.outer(points @ normal - offset, normal)
-        np.add.at(votes, (labels, labels[nearest_targets(reflected, points)]), 1)
+        np.add.at(votes, (labels, labels[nearest_targets(reflect(points, normal, offset), points)]), 1)
         majority = votes.argmax(axis=1).tolist()
         image = {part: other for part, other in enumerate(majority) if majority[other] == part
                  and all(votes[a, b] > MIN_MIRRORED_FRACTION * votes[a].sum() for a, b in ((part, other), (other, part)))}
@@ -186,7 +190,7 @@ def _log_sizes(corners: np.ndarray) -> np.ndarray:
     """(4,) logarithms of the square root of a part's area and of its extents along the principal axes. Unlike the features
     in partwheel.compatible they don't depend on the border, which differs a little between similar parts of a cut.
     corners : (T, 3, 3)"""
-    areas = np.linalg.norm(doubled_area_vectors(corners), axis=1) / 2
+    areas = triangle_areas(corners)
     total = max(areas.sum(), 1e-300)
     moments = second_moments(areas, corners - (areas @ corners.mean(axis=1)) / total)
     return np.log(np.sqrt(np.maximum([total, *np.linalg.eigvalsh(moments / (12 * total))], 1e-300)))

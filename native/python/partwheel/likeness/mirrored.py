@@ -6,10 +6,11 @@ from typing import List, NamedTuple
 import numpy as np
 
 from ..components import to_mask
-from ..cut import mirror_planes
+from ..cut import mirror_planes, reflect
 from ..duplicates import without_duplicates
 from ..hierarchy import Hierarchy
-from ..triangles import doubled_area_vectors, nearest_targets, sample_triangles
+from ..triangles import nearest_targets, sample_triangles, triangle_areas
+from .similar import slice_sums
 
 PART_SAMPLES = 512  # points on the part
 TARGET_SAMPLES = 8192  # points on the surface around its mirror image
@@ -32,29 +33,28 @@ def mirrored_parts(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.nda
     plane first. faces : (T,) the source face of each triangle. Raises PartwheelError if the surface is invalid."""
     triangles, faces = without_duplicates(hierarchy, vertices, triangles, faces)
     corners = np.asarray(vertices, np.float64)[np.asarray(triangles)]
-    doubled_areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
+    areas = triangle_areas(corners)
     is_inside = to_mask(len(hierarchy.order), hierarchy.faces(node))[faces]
     if not is_inside.any():
         return []
-    points = sample_triangles(corners[is_inside], doubled_areas[is_inside], PART_SAMPLES)[0]
-    area = np.cumsum(np.concatenate([[0], np.bincount(faces, doubled_areas, len(hierarchy.order))[hierarchy.order]]))
-    area = area[hierarchy.last] - area[hierarchy.first]  # doubled, of each node
+    points = sample_triangles(corners[is_inside], areas[is_inside], PART_SAMPLES)[0]
+    face_count, first, last = len(hierarchy.order), hierarchy.first, hierarchy.last
+    area = slice_sums(np.bincount(faces, areas, face_count)[hierarchy.order], first, last)  # of each node
     result = []
     for normal, offset in mirror_planes(vertices, triangles):
-        reflected = points - 2 * np.outer(points @ normal - offset, normal)
-        hits = np.bincount(_nearest_faces(reflected, corners, doubled_areas, faces), minlength=len(hierarchy.order))[hierarchy.order]
-        hits = np.concatenate([[0], np.cumsum(hits)]) / PART_SAMPLES
-        intersection = np.minimum((hits[hierarchy.last] - hits[hierarchy.first]) * area[node], area)
+        hit_faces = _nearest_faces(reflect(points, normal, offset), corners, areas, faces)
+        hits = slice_sums(np.bincount(hit_faces, minlength=face_count)[hierarchy.order], first, last)
+        intersection = np.minimum(hits / PART_SAMPLES * area[node], area)
         overlap = intersection / np.maximum(area[node] + area - intersection, 1e-300)
         if overlap[node] < MAX_SELF_OVERLAP:
-            is_disjoint = (hierarchy.last <= hierarchy.first[node]) | (hierarchy.first >= hierarchy.last[node])
+            is_disjoint = (last <= first[node]) | (first >= last[node])
             best = int(np.where(is_disjoint, overlap, -1).argmax())
             if overlap[best] >= MIN_OVERLAP:
                 result.append(MirrorImage(best, float(overlap[best]), normal, offset))
     return result
 
 
-def _nearest_faces(points: np.ndarray, corners: np.ndarray, weights: np.ndarray, faces: np.ndarray) -> np.ndarray:
+def _nearest_faces(points: np.ndarray, corners: np.ndarray, areas: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """(n,) the source face nearest to each point (n, 3): that of the nearest sample or triangle center in the points'
     bounding box and a margin."""
     low, high = points.min(axis=0), points.max(axis=0)
@@ -63,6 +63,6 @@ def _nearest_faces(points: np.ndarray, corners: np.ndarray, weights: np.ndarray,
     if not in_box.any():
         in_box[:] = True
     corners, faces = corners[in_box], faces[in_box]
-    samples, sampled = sample_triangles(corners, weights[in_box], TARGET_SAMPLES)
+    samples, sampled = sample_triangles(corners, areas[in_box], TARGET_SAMPLES)
     targets, target_faces = np.vstack([samples, corners.mean(axis=1)]), np.concatenate([faces[sampled], faces])
     return target_faces[nearest_targets(points, targets)]

@@ -7,7 +7,7 @@ from typing import Iterable, Iterator, List, Optional, Sequence
 import numpy as np
 
 from ..components import to_mask
-from ..cut import mirror_planes
+from ..cut import mirror_planes, reflect
 from ..hierarchy import Hierarchy
 from ..index import Index
 from ..library import Context, PartwheelError, Status
@@ -74,7 +74,7 @@ def _find_alike(hierarchy: Hierarchy, vertices: np.ndarray, triangles: np.ndarra
     index = None
     for normal, offset in mirror_planes(vertices, triangles):
         index = index or Index(tree)
-        tets = index.nearest(centers - 2 * np.outer(centers @ normal - offset, normal))[0]
+        tets = index.nearest(reflect(centers, normal, offset))[0]
         image = (tets >= tree.tet_first[node]) & (tets < tree.tet_last[node])
         if image.any() and not (image & part).any() and (inserted := _insert(hierarchy, image)):
             yield _mask(inserted, best_node(inserted, image)[0])

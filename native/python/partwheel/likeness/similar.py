@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from ..deform import rigid_motion
 from ..duplicates import without_duplicates
 from ..hierarchy import Hierarchy
-from ..triangles import doubled_area_vectors, sample_triangles
+from ..triangles import doubled_area_vectors, sample_triangles, triangle_areas
 
 # Sampling
 SAMPLES, FINE_SAMPLES = 192, 768  # points on a part: to align it, to measure distances to it
@@ -75,22 +75,25 @@ def measure_nodes(hierarchy: Hierarchy, vertices: ArrayLike, triangles: np.ndarr
     # Integral of x x^T over a triangle: area / 12 (sum of c c^T over corners c, plus s s^T of their sum s).
     squares = (np.einsum("tki,tkj->tij", corners, corners) + sums[:, :, None] * sums[:, None]) * (areas / 12)[:, None, None]
 
-    def node_sums(values: np.ndarray) -> np.ndarray:
-        prefix = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
-        return prefix[last] - prefix[first]
-
-    area = np.maximum(node_sums(areas), 1e-300)
-    center = node_sums(sums * (areas / 3)[:, None]) / area[:, None]
-    moments = node_sums(squares) / area[:, None, None] - center[:, :, None] * center[:, None]
+    area = np.maximum(slice_sums(areas, first, last), 1e-300)
+    center = slice_sums(sums * (areas / 3)[:, None], first, last) / area[:, None]
+    moments = slice_sums(squares, first, last) / area[:, None, None] - center[:, :, None] * center[:, None]
     root_area = np.sqrt(area)
     extents = np.sqrt(np.maximum(np.linalg.eigvalsh(moments), 0))
-    border = np.sqrt(np.linalg.norm(node_sums(normals), axis=1) / np.pi)  # radius of a disk with the border's vector area
+    # The radius of a disk with the border's vector area.
+    border = np.sqrt(np.linalg.norm(slice_sums(normals, first, last), axis=1) / np.pi)
     volume = np.cbrt(np.maximum(hierarchy.volume * abs(np.linalg.det(linear)), 0))
     min_length = MIN_RELATIVE_LENGTH * root_area
     lengths = np.log(np.column_stack([root_area, *(np.maximum(length, min_length)
                                                    for length in (volume, *extents.T, border))]))
     return NodeMeasures(lengths, center, first, last, corners, sample_triangles(corners, areas, MODEL_SAMPLES)[0],
                         np.sqrt(areas.sum()))
+
+
+def slice_sums(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """(N, ...) sums of values[first:last] (n, ...) for N slices."""
+    prefix = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
+    return prefix[last] - prefix[first]
 
 
 def similar_parts(hierarchy: Hierarchy, measures: NodeMeasures, node: int,
@@ -148,13 +151,13 @@ class SampledSurface:
 
     def __init__(self, measures: NodeMeasures, node: int) -> None:
         corners = measures.corners[measures.first[node]:measures.last[node]]
-        doubled_areas = np.linalg.norm(doubled_area_vectors(corners), axis=1)
-        self.fine_points = sample_triangles(corners, doubled_areas, FINE_SAMPLES)[0]
-        self.points = sample_triangles(corners, doubled_areas, SAMPLES)[0]
+        areas = triangle_areas(corners)
+        self.fine_points = sample_triangles(corners, areas, FINE_SAMPLES)[0]
+        self.points = sample_triangles(corners, areas, SAMPLES)[0]
         center = self.fine_points.mean(axis=0)
         self.fine_points -= center
         self.points -= center
-        self.size = np.sqrt(max(doubled_areas.sum() / 2, 1e-300))
+        self.size = np.sqrt(max(areas.sum(), 1e-300))
         self.axes = np.linalg.eigh(self.fine_points.T @ self.fine_points)[1].T[::-1]
 
 
@@ -210,8 +213,8 @@ def _squared_distances(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
 def best_node(hierarchy: Hierarchy, inside: np.ndarray) -> Tuple[int, float]:
     """(node, intersection over union of the face counts) of the node with the largest overlap with a set of faces, inside
     (F,) bool; of nodes with the same faces the one with the best score."""
-    prefix = np.concatenate([[0], np.cumsum(inside[hierarchy.order])])
-    intersection = prefix[hierarchy.last] - prefix[hierarchy.first]
-    overlap = intersection / np.maximum(hierarchy.last - hierarchy.first + prefix[-1] - intersection, 1)
+    first, last = hierarchy.first, hierarchy.last
+    intersection = slice_sums(inside[hierarchy.order], first, last)
+    overlap = intersection / np.maximum(last - first + inside.sum() - intersection, 1)
     best = int(np.lexsort((hierarchy.score, overlap))[-1])
     return best, float(overlap[best])
