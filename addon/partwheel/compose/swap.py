@@ -168,6 +168,6 @@ class SwapPreview:
         mesh = self.swap_target.create_rest_mesh()
         rest = obj.copy()  # with its modifiers and materials
         rest.data = mesh
-        composition.target_collection(obj).objects.link(rest)
+        composition.target_collections(obj)[0].objects.link(rest)
         self.rest, self.shown = previews.mark_preview(rest).name, {}
         previews.hide_original(obj)

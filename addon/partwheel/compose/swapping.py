@@ -109,7 +109,7 @@ class SwapTarget:
             hierarchy = _candidate_hierarchy(candidate)
             name = f"{source.name} part"
             mesh = composition.create_part_mesh(source, hierarchy, candidate.node, CapOptions(), self.snap)
-        new = composition.create_bare_object(source, mesh, name, composition.target_collection(obj))
+        new = composition.create_bare_object(source, mesh, name, composition.target_collections(obj)[0])
         for new_slot, slot in zip(new.material_slots, source.material_slots):
             new_slot.link, new_slot.material = slot.link, slot.material
         self.move_stand_in(new, candidate, adjustment)

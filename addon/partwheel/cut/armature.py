@@ -78,7 +78,7 @@ def _create_armature_object(obj: bpy.types.Object) -> bpy.types.Object:
     data = bpy.data.armatures.new(f"{obj.name} bones")
     data[ARMATURE_PROPERTY] = True
     armature = bpy.data.objects.new(data.name, data)
-    composition.target_collection(obj).objects.link(armature)
+    composition.target_collections(obj)[0].objects.link(armature)
     armature.show_in_front = True
     armature.parent, armature.parent_type, armature.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
     if obj.parent_type in {"VERTEX", "VERTEX_3"}:

@@ -27,16 +27,12 @@ def check_hulls(obj: bpy.types.Object) -> list[str]:
     """A sentence for each problem; [] if the hulls can be exported. Cached until the hulls or the object change."""
     children = hulls.find_hulls(obj)
     hierarchy = registry.find_hierarchy(obj.data)
-    key = (_flat(obj.matrix_world), id(hierarchy), *(
-        (child.name, _flat(child.matrix_local), get_mesh_state(child.data).geometry_revision) for child in children))
+    key = (np.array(obj.matrix_world).tobytes(), id(hierarchy), *(
+        (child.name, np.array(child.matrix_local).tobytes(), get_mesh_state(child.data).geometry_revision) for child in children))
     if _cache.get(obj.name, (None,))[0] != key:
         _cache.clear()
         _cache[obj.name] = key, _find_problems(obj, children, hierarchy)
     return _cache[obj.name][1]
-
-
-def _flat(matrix: object) -> tuple:
-    return tuple(value for row in matrix for value in row)
 
 
 def _find_problems(obj: bpy.types.Object, children: list[bpy.types.Object], hierarchy: Hierarchy | None) -> list[str]:

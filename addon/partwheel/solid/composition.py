@@ -98,14 +98,9 @@ def _included_collections(layer_collection: bpy.types.LayerCollection) -> Iterat
         yield from _included_collections(child)
 
 
-def target_collection(obj: bpy.types.Object) -> bpy.types.Collection:
-    """The first of target_collections()."""
-    return target_collections(obj)[0]
-
-
 def create_collection(obj: bpy.types.Object, name: str) -> bpy.types.Collection:
     """A new collection for objects made from this one."""
-    parent, collection = target_collection(obj), bpy.data.collections.new(name)
+    parent, collection = target_collections(obj)[0], bpy.data.collections.new(name)
     parent.children.link(collection)
     return collection
 
