@@ -8,7 +8,7 @@ import threading
 import pytest
 
 from partwheel.batch import lock
-from partwheel.batch.inputs import Input
+from partwheel.batch.inputs import Input, shard_files
 from partwheel.batch.run import BatchOptions, BatchRun
 
 SETTINGS = {"outputs": ["hierarchy"]}
@@ -111,6 +111,14 @@ def test_failures_are_results_and_are_retried_on_request(tmp_path, files):
     assert counts.built == 1 and counts.failed == {}
     keys = work.store.inputs()
     assert sorted(published_keys(work)) == sorted([*keys.values(), *(keys[str(path)] for path in files[1:4])])
+
+
+def test_each_file_is_in_one_shard_and_keeps_it():
+    paths = [f"{number}.off" for number in range(20)]
+    shards = [shard_files(paths, index, 3) for index in (1, 2, 3)]
+    assert sorted(sum(shards, [])) == sorted(paths) and all(shards)
+    for index, shard in enumerate(shards, 1):
+        assert [path for path in shard_files(["new.off", *paths], index, 3) if path != "new.off"] == shard
 
 
 def test_a_file_that_changes_meanwhile_is_no_result(tmp_path, files):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Callable, Deque, Dict, FrozenSet, List, NamedTuple, Optional, Set, Tuple, Union
 
 from . import lock
-from .inputs import Input, shard_files, tool_versions
+from .inputs import Input, tool_versions
 from .slot import Slot
 from .store import Store
 from ..worker import available_memory
@@ -84,14 +84,13 @@ def _cgroup_memory() -> int:
 
 
 class BatchRun:
-    """One run over the files of a shard. paths : the files of all shards; create_slot : creates a Slot; for tests"""
+    """One run over the files of a shard. create_slot : creates a Slot; for tests"""
 
     def __init__(self, folder: Union[str, Path], paths: List[str], options: BatchOptions,
                  create_slot: Callable[[], Slot] = Slot) -> None:
         self.store = Store(folder, "{}-of-{}".format(*options.shard))
         self._options = options
         self._versions = tool_versions(options.settings)
-        paths = shard_files(paths, *options.shard)
         self._sizes = {path: _file_size(path) for path in paths}
         self._memory_share = options.memory // options.jobs
         # Files that need more than their share come last, so that no small file waits for them.
