@@ -114,12 +114,12 @@ def vertex_normals(vertices, triangles):
     return normals / np.linalg.norm(normals, axis=1)[:, None]
 
 
-def crossed(path, faces, holes=7):
-    """A model subdivided to nearly this number of faces, with round holes and a smaller copy of the original through it."""
+def crossed(path, faces):
+    """A model subdivided to nearly this number of faces, with seven round holes and a smaller copy of the original through it."""
     copy = read(path)
     vertices, triangles = subdivide(copy, faces - len(copy[1]))
     middles, size = vertices[triangles].mean(axis=1), np.ptp(vertices, axis=0).max()
-    centers = middles[np.random.default_rng(SEED).choice(len(middles), holes, replace=False)]
+    centers = middles[np.random.default_rng(SEED).choice(len(middles), 7, replace=False)]
     distances, _ = cKDTree(centers).query(middles)
     shrunk = 0.5 * copy[0][:, [1, 2, 0]] + vertices.mean(axis=0) - 0.5 * copy[0][:, [1, 2, 0]].mean(axis=0)
     return np.vstack([vertices, shrunk]), np.vstack([triangles[distances > 0.02 * size], copy[1] + len(vertices)])
