@@ -93,7 +93,8 @@ Hierarchy build_shell(const MeshView& mesh, const ShellPatches& patches, const B
     return hierarchy;
 }
 
-// Prepare: what divides the mesh, and what goes with other faces. Then each shell on its own.
+// Prepare: finds the shells and the marks between parts, and the faces that go with others, such as duplicates. Then each
+// shell is built on its own.
 Hierarchy build_shells(const MeshView& mesh, const BuildOptions& options, Progress& progress) {
     Shells shells = find_shells(mesh);
     if (shells.count > max_shells)

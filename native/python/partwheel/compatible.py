@@ -351,11 +351,10 @@ def candidate_nodes(hierarchy: Hierarchy) -> List[int]:
 
 def node_overlap(hierarchy: Hierarchy, one: int, other: int) -> float:
     """Overlap of two nodes: intersection over union of their areas, 0 to 1."""
-    if hierarchy.tet_first[one] > hierarchy.tet_first[other] or hierarchy.tet_last[one] < hierarchy.tet_last[other]:
-        one, other = other, one
-    if hierarchy.tet_first[one] > hierarchy.tet_first[other] or hierarchy.tet_last[one] < hierarchy.tet_last[other]:
-        return 0.0
-    return float(hierarchy.area[other] / hierarchy.area[one])
+    first, last = hierarchy.tet_first, hierarchy.tet_last
+    inner, outer = sorted((one, other), key=lambda node: last[node] - first[node])
+    is_nested = first[outer] <= first[inner] and last[inner] <= last[outer]
+    return float(hierarchy.area[inner] / hierarchy.area[outer]) if is_nested else 0.0
 
 
 def part_shape(hierarchy: Hierarchy, node: int, positions: np.ndarray, matrix: np.ndarray, size: float,

@@ -32,6 +32,12 @@ private:
     std::vector<size_t> begin_;  // start of each row, then the end twice
 };
 
+// Corner k of triangle t has the number 3 t + k, as the side from it to the next one.
+template <std::integral Number>
+Number next_corner(Number corner) {
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
 // A side of a facet at an edge with a known lower vertex.
 struct Side {
     int32_t high, number;
@@ -61,7 +67,7 @@ void for_each_edge(size_t vertices, size_t sides, const Ends& ends, const Visit&
     }
 }
 
-// The same for triangles: side 3 t + k goes from corner k of triangle t to the next.
+// The same for the sides of triangles, see next_corner().
 template <class Visit>
 void for_each_edge(size_t vertices, std::span<const Triangle> triangles, const Visit& visit) {
     const auto ends = [&](size_t side) {

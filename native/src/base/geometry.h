@@ -55,11 +55,22 @@ inline Point cross(const Point& a, const Point& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+template <size_t n>
+bool is_finite(const std::array<double, n>& values) {
+    return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
+}
+
 inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 inline double squared(const Point& p) { return dot(p, p); }
 
 inline double length(const Point& p) { return std::sqrt(dot(p, p)); }
+
+inline Point centroid(std::span<const Point> points) {
+    Point sum{};
+    for (const Point& p : points) sum = sum + 1 / static_cast<double>(points.size()) * p;
+    return sum;
+}
 
 // The rows of a 3 x 4 matrix (A | b): x -> A x + b.
 using Affine = std::array<double, 12>;
@@ -69,10 +80,6 @@ inline constexpr Affine identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 inline Point transform_point(const Affine& m, const Point& p) {
     return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
             m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
-}
-
-inline bool is_finite(const Affine& m) {
-    return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(x); });
 }
 
 // b * inverse(a); not finite if a is singular.

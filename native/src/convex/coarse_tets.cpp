@@ -38,8 +38,7 @@ std::vector<int32_t> cluster_vertices(std::span<const Point> points, size_t targ
     if (points.size() <= target_count) return representative;
     const Box box = Box::around(points);
     if (!(box.diagonal() > 0)) return representative;
-    Point middle{};
-    for (const Point& p : points) middle = middle + 1 / static_cast<double>(points.size()) * p;
+    const Point middle = centroid(points);
     // Bisection between a cell size that gives too many cells and one that gives too few.
     double low = box.diagonal() / most_cells, high = box.diagonal();
     for (size_t i = 0; i < n_bisections; ++i) {

@@ -27,7 +27,7 @@ constexpr double max_shift = 0.5;          // of a point by the coarse copy, rel
 constexpr double excess_pieces = 1.5;      // pieces per wanted hull before merging
 constexpr size_t excess_parts = 2;         // parts of the hierarchy per wanted hull before merging
 constexpr double relative_slack = 0.01;
-constexpr double coarse_slack = 0.01;    // in working coordinates, where a point near the farthest does
+constexpr double coarse_slack = 0.01;    // in working coordinates, to find a point that is nearly the farthest
 constexpr double tie = 1e-5;             // costs that differ by less, relative, are the same
 constexpr size_t max_wall_pieces = 128, wall_pieces_per_hull = 4;  // before merging
 constexpr size_t max_open_pieces = 256;  // before merging, to keep openings free
@@ -173,8 +173,8 @@ private:
             [this, expected_ticks] { tick(expected_ticks); }, std::move(is_good));
     }
 
-    // Starts from the planes of walls, from the whole solid and from the hierarchy's parts, and takes what covers least
-    // openings and costs least after merging.
+    // Searches from three starts: the solid divided at walls, the whole solid, and the hierarchy's parts. Takes the
+    // result whose hulls cover the fewest openings after merging, of several the one that costs least.
     std::vector<Tetrahedra> decompose_by_count(const CoarsePoints& coarse) {
         std::array<Start, 2> starts;  // the whole solid; the hierarchy's parts, if all of it is wanted
         const size_t start_count = options_.slices.empty() ? 2 : 1;

@@ -59,8 +59,7 @@ std::array<Point, 3> box_directions(std::span<const Point> points) {
 // Maps the box around a hull to a cube: otherwise a thin hull would get all planes around its rim.
 class BoxFrame {
 public:
-    explicit BoxFrame(std::span<const Point> points) {
-        for (const Point& p : points) center = center + 1 / static_cast<double>(points.size()) * p;
+    explicit BoxFrame(std::span<const Point> points) : center(centroid(points)) {
         std::vector<Point> centered;
         for (const Point& p : points) centered.push_back(p - center);
         directions_ = box_directions(centered);
@@ -76,7 +75,7 @@ public:
         return p[0] * sizes_[0] * directions_[0] + p[1] * sizes_[1] * directions_[1] + p[2] * sizes_[2] * directions_[2];
     }
 
-    Point center{};
+    Point center;
 
 private:
     std::array<Point, 3> directions_{};

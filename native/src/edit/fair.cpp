@@ -29,7 +29,7 @@ std::vector<bool> free_vertices(std::span<const Edge> edges, std::span<const uin
 
 void check(std::span<const Point> vertices, std::span<const Edge> edges) {
     for (size_t v = 0; v < vertices.size(); ++v)
-        if (!std::ranges::all_of(vertices[v], [](double x) { return std::isfinite(x); }))
+        if (!is_finite(vertices[v]))
             throw Error(PW_ERROR_NOT_FINITE, "A coordinate is not a finite number.",
                         {.vertices = {static_cast<int64_t>(v), -1}});
     for (const Edge& edge : edges)
@@ -124,7 +124,7 @@ std::vector<Point> fair_vertices(std::span<const Point> vertices, std::span<cons
     for (size_t v = 0; v < vertices.size(); ++v) {
         if (!free[v]) continue;
         const Point& p = positions[idx(factor.row_of(static_cast<size_t>(umbrellas.column[v])))];
-        if (!std::ranges::all_of(p, [](double x) { return std::isfinite(x); }))
+        if (!is_finite(p))
             throw Error(PW_ERROR_INTERNAL, "The surface can't be smoothed: its edges differ too much in length. Dissolve degenerate "
                                            "faces first.");
         result[v] = umbrellas.origin + umbrellas.unit * p;

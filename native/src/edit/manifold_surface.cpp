@@ -85,9 +85,8 @@ private:
         throw_inconsistent_tetrahedra();
     }
 
-    static size_t next_in_triangle(size_t half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; }
     // Corner i is where half-edge i begins. Corners at a vertex that are connected across edges form an umbrella.
-    size_t next_in_umbrella(size_t corner) const { return next_in_triangle(idx(across_[corner])); }
+    size_t next_in_umbrella(size_t corner) const { return next_corner(idx(across_[corner])); }
 
     bool are_in_one_umbrella(size_t corner, size_t other) const {
         for (size_t i = next_in_umbrella(corner); i != corner; i = next_in_umbrella(i))
@@ -112,7 +111,7 @@ private:
         }
         bool is_done = true;
         std::vector<size_t> pairs;  // by the half-edge that leads to the higher vertex
-        const auto ends = [&](size_t edge) { return std::pair(corner_vertex_[edge], corner_vertex_[next_in_triangle(edge)]); };
+        const auto ends = [&](size_t edge) { return std::pair(corner_vertex_[edge], corner_vertex_[next_corner(edge)]); };
         for_each_edge(mesh_.vertices.size(), across_.size(), ends, [&](int32_t low, std::span<const Side> sides) {
             if (sides.size() == 2) return;
             is_done = false;
@@ -127,7 +126,7 @@ private:
 
     // If two half-edges, and so their partners, have both vertices in common.
     void exchange_partners(size_t a, size_t b) {
-        if (!are_in_one_umbrella(a, b) || !are_in_one_umbrella(next_in_triangle(a), next_in_triangle(b))) return;
+        if (!are_in_one_umbrella(a, b) || !are_in_one_umbrella(next_corner(a), next_corner(b))) return;
         std::swap(across_[a], across_[b]);
         across_[idx(across_[a])] = static_cast<int32_t>(a);
         across_[idx(across_[b])] = static_cast<int32_t>(b);

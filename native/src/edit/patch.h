@@ -6,10 +6,7 @@
 
 namespace partwheel {
 
-// Corners and sides are numbered 3 * triangle + corner; a side goes from its corner to the next one.
-inline int32_t next_corner(int32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-
-// A triangle mesh and its interior edges, those with two triangles.
+// A triangle mesh and its interior edges, those with two triangles. Sides and corners: see next_corner().
 struct SeamMesh {
     struct Face {
         std::array<Point, 3> corners;

@@ -23,7 +23,7 @@ public:
     // data: valid, see SavedHierarchy::check(). merges: their hull volumes are not used.
     Hierarchy(HierarchyData data, std::vector<Merge> merges);
 
-    // The hierarchy of an assembly: those of its shells as subtrees, joined two at a time (see ShellJoins; shells.size() -
+    // The hierarchy of an assembly: its shells' hierarchies as subtrees, joined two at a time (see ShellJoins; shells.size() -
     // 1 joins). original: of each source face the one that it goes with, or itself; none: each is its own.
     static Hierarchy assemble(std::vector<ShellHierarchy> shells, std::span<const std::array<int32_t, 2>> joins,
                               size_t face_count, std::span<const int32_t> original, Progress& progress);
@@ -95,7 +95,7 @@ private:
 
 struct ShellHierarchy {
     Hierarchy hierarchy;
-    std::vector<int32_t> faces, vertices;  // the caller's, of each of its own
+    std::vector<int32_t> faces, vertices;  // the caller's number of each of its own
     size_t duplicates = 0;   // faces that go with its own because they are copies of them
     size_t inner_faces = 0;  // faces of an inner wall, which go with those of the outer one
     size_t welded = 0;       // vertices that were merged with others

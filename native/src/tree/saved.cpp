@@ -121,7 +121,7 @@ void check_summary(const SavedHierarchy& saved) {
     if (method == 0 || method != saved.summary.fill_method || (proxies != 0) != (saved.summary.proxy_triangles > 0))
         refuse_saved("its fill method is unknown");
     if (saved.shell_fills.size() > std::min(saved.scores.size() / 2 + 1, saved.tetrahedra.size()))
-        refuse_saved("its shells can't be such");
+        refuse_saved("its number of shells is impossible");
     const bool exact = saved.summary.fill_method == PW_FILL_EXACT && saved.summary.proxy_triangles == 0;
     const auto added = static_cast<size_t>(std::count(saved.source.begin(), saved.source.end(), -1));
     if (saved.summary.components < saved.shell_fills.size() || saved.summary.components > saved.tetrahedra.size() ||
@@ -170,8 +170,7 @@ std::vector<uint8_t> SavedHierarchy::pack(Progress& progress) const {
 SavedHierarchy SavedHierarchy::unpack(std::span<const uint8_t> bytes) {
     if (bytes.size() < magic.size() || !std::equal(magic.begin(), magic.end(), bytes.begin()))
         refuse_saved("it is not one of Partwheel's");
-    // All versions have theirs behind the magic bytes; what follows, and how it is hashed, may be another matter in
-    // each.
+    // Every version of the format has its number behind the magic bytes. The rest, and its hash, may differ.
     uint32_t version;
     if (bytes.size() < magic.size() + sizeof version) refuse_saved("it is truncated");
     std::memcpy(&version, bytes.data() + magic.size(), sizeof version);

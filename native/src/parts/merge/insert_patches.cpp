@@ -134,7 +134,7 @@ void join_inner_parts(const PartTree& tree, std::span<const uint8_t> has_surface
     std::vector<int32_t> at_surface;  // of each node: one of its parts with surface; -1: it has none
     for (size_t p = 0; p < tree.count; ++p) at_surface.push_back(has_surface[p] ? static_cast<int32_t>(p) : -1);
     for (const auto& [a, b] : tree.children) at_surface.push_back(std::max(at_surface[idx(a)], at_surface[idx(b)]));
-    for (size_t j = tree.children.size(); j-- > 0;)  // what has none takes that of the node around it
+    for (size_t j = tree.children.size(); j-- > 0;)  // nodes without one take that of the node around them
         for (const int32_t child : tree.children[j])
             if (at_surface[idx(child)] < 0) at_surface[idx(child)] = at_surface[tree.count + j];
     for (size_t p = 0; p < tree.count; ++p)

@@ -81,7 +81,7 @@ private:
 };
 
 struct ScoredTree {
-    // The first merges are the paper's, within the parts; then those of the parts; last those of the components.
+    // First the paper's merges within the parts, then the merges of parts, last the merges of components.
     BinaryTree tree;
     // For each part and each node above: the expected overlap with a part that a person would cut, 0..1; 0 marks an
     // intermediate merge. First the parts in depth-first order, then the merges. 2 parts - 1 values.

@@ -441,7 +441,7 @@ private:
     std::vector<size_t> first_number_, count_;  // of the parts of each node, see number_parts()
     double model_area_ = 0;
     std::vector<double> area_;  // surface area of each tetrahedron
-    std::vector<Point> center_;  // of each tetrahedron's boundary facets, or its own
+    std::vector<Point> center_;  // of each tetrahedron's boundary facets; without any, its centroid
     std::vector<std::array<FacetCost, 4>> facets_;
 
     // For each tetrahedron, during its split.
