@@ -558,6 +558,19 @@ class ObjectData(SolidTest):
         self.assertEqual([tuple(obj.data.vertices[vertex].co) for vertex in obj.modifiers["hook"].vertex_indices],
                          [tuple(hooked)])
 
+    def test_hooks_of_each_object_with_the_mesh_stay_where_they_are(self):
+        obj, hierarchy = self.built("hand")
+        twin = self.link(bpy.data.objects.new("twin", obj.data))
+        node = hierarchy.path(0)[-2]
+        removed = {vertex for face in hierarchy.faces(node).tolist() for vertex in obj.data.polygons[face].vertices}
+        kept = [vertex.index for vertex in obj.data.vertices if vertex.index not in removed]
+        hooked = {tuple(obj.data.vertices[vertex].co) for vertex in kept[::7]}
+        for user in (obj, twin):
+            user.modifiers.new("hook", "HOOK").vertex_indices_set(kept[::7])
+        part("api").remove(obj, node)
+        for user in (obj, twin):
+            self.assertEqual({tuple(user.data.vertices[vertex].co) for vertex in user.modifiers["hook"].vertex_indices}, hooked)
+
     def cube(self, place):
         bpy.ops.mesh.primitive_cube_add(location=place)
         return bpy.context.active_object

@@ -78,6 +78,13 @@ class Operators(MeshTest):
                 self.assertNotIn("context is incorrect", str(raised.exception))
         self.assertGreater(len(refused), 25)
 
+    def test_picking_without_an_object_says_why(self):
+        for prepare in (self.nothing, self.lamp):
+            prepare()
+            for pick in (bpy.ops.object.partwheel_select, bpy.ops.object.partwheel_pick):
+                with self.assertRaisesRegex(RuntimeError, "^Error: Select a mesh object"):
+                    pick(face_index=0)
+
     def nothing(self):
         bpy.context.view_layer.objects.active = None
 

@@ -174,11 +174,28 @@ class CutResults(PartsCase):
         before = numpy.zeros(len(cut.labels), numpy.int32)
         before[toes] = 1
         obj.data.polygons.foreach_set("material_index", before)
+        twin = self.link(bpy.data.objects.new("twin", obj.data))
+        twin.material_slots[0].link, twin.material_slots[0].material = "OBJECT", bpy.data.materials.new("twin's own")
         part("api").write(obj, cut, {"MATERIALS"})
         index = read(obj.data.polygons, "material_index", numpy.int32)
         self.assertEqual(len(obj.data.materials), len(cut) + 1)
         self.assertTrue(all(obj.data.materials[slot] == old[was] for slot, was in zip(index, before)))
         self.assertTrue(all(len({*cut.labels[index == slot]}) == 1 for slot in range(len(cut) + 1)))
+        self.assertEqual([slot.material.name for slot in twin.material_slots],
+                         ["toe" if material == old[1] else "twin's own" for material in obj.data.materials])
+
+    def test_colored_materials_are_not_the_users(self):
+        """Whatever these are called; those that were created before are used again."""
+        obj, cut = self.model("elephant")
+        names = part("api").write(obj, cut).names
+        own = bpy.data.materials.new(f"elephant {names[0]}")
+        own.diffuse_color = before = (0.125, 0.25, 0.5, 1)
+        part("api").write(obj, cut, {"COLORS"})
+        self.assertNotIn(own, list(obj.data.materials))
+        self.assertEqual(tuple(own.diffuse_color), before)
+        first = obj.data.materials[1]
+        part("api").write(obj, cut, {"COLORS"})
+        self.assertEqual(obj.data.materials[1], first)
 
     @only_in("newest")
     def test_objects_are_closed_and_make_the_whole(self):

@@ -4,9 +4,10 @@
 import bpy
 import numpy as np
 
-from ..mesh import FACE_SET, Refused, arrays
+from ..mesh import FACE_SET, Refused, arrays, find_users
 from partwheel.cut import Cut, colors
 
+MATERIAL_PROPERTY = "partwheel_color"  # marks materials that write_colored_materials() has created, and may change
 GROUPS_PROPERTY = "partwheel_groups"  # mesh property: names of the vertex groups that write_vertex_groups() has created
 
 
@@ -54,22 +55,27 @@ def write_colored_materials(obj: bpy.types.Object, cut: Cut, names: list[str]) -
 
 def write_material_slots(obj: bpy.types.Object, cut: Cut, _names: list[str]) -> None:
     """The mesh's own materials with a slot for each part, or several where a part has several materials."""
-    mesh, old_slots = obj.data, [(slot.link, slot.material) for slot in obj.material_slots]
+    mesh = obj.data
+    old_slots = {user: [(slot.link, slot.material) for slot in user.material_slots] for user in find_users(mesh)}
     old_materials = list(mesh.materials) or [None]
     indices = np.clip(arrays.read_material_indices(mesh), 0, len(old_materials) - 1)
     slots, index = np.unique(np.column_stack([cut.labels, indices]), axis=0, return_inverse=True)
     mesh.materials.clear()
     for _, material in slots.tolist():
         mesh.materials.append(old_materials[material])
-    for slot, (_, material) in zip(obj.material_slots, slots.tolist() if old_slots else ()):
-        if old_slots[material][0] == "OBJECT":
-            slot.link, slot.material = old_slots[material]
+    for user, of_user in old_slots.items():
+        for slot, (_, material) in zip(user.material_slots, slots.tolist() if of_user else ()):
+            if of_user[material][0] == "OBJECT":
+                slot.link, slot.material = of_user[material]
     arrays.write_material_indices(mesh, index.ravel().astype(np.int32))
 
 
 def _colored_material(name: str, color: np.ndarray) -> bpy.types.Material:
-    """The material of this name, created if missing, with this sRGB color (3,)."""
-    material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    """The material of this name that this function created earlier, or a new one, with this sRGB color (3,)."""
+    material = bpy.data.materials.get((name, None))
+    if not material or MATERIAL_PROPERTY not in material:
+        material = bpy.data.materials.new(name)
+        material[MATERIAL_PROPERTY] = True
     material.diffuse_color = *color, 1
     material.use_nodes = True
     for node in material.node_tree.nodes:

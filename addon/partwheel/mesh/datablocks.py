@@ -64,6 +64,11 @@ def rename(block: bpy.types.Object | bpy.types.Mesh, name: str) -> None:
     block.name = name
 
 
+def find_users(mesh: bpy.types.Mesh) -> list[bpy.types.Object]:
+    """Return the objects that share the mesh."""
+    return [obj for obj in bpy.data.objects if obj.data == mesh]
+
+
 def remove_object(obj: bpy.types.Object) -> None:
     """Remove an object, and its mesh and shape keys if nothing else uses them."""
     mesh = obj.data

@@ -105,7 +105,9 @@ class PartPicker(InView):
 
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:
-        obj = self.picker.find_objects(context)[0]
+        obj = next(iter(self.picker.find_objects(context)), None)
+        if not obj:
+            raise Refused("Select a mesh object, in Edit Mode or Object Mode.")
         if reason := read_only_reason(obj):
             self.report({"ERROR"}, reason)
             return {"CANCELLED"}

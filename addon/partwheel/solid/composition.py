@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..mesh import MeshSnapshot, Refused, arrays, assembly, rename, rollback_on_error
+from ..mesh import MeshSnapshot, Refused, arrays, assembly, find_users, rename, rollback_on_error
 from ..mesh.datablocks import copy_settings, copy_actions, redirect_drivers
 from ..pick import borders
 from ..translations.lookup import rpt_
@@ -168,10 +168,12 @@ def _remove_mirrored_caps(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
 
 @contextmanager
 def preserve_hooks(obj: bpy.types.Object) -> Iterator[None]:
-    """While the block changes the object's vertices, its Hook modifiers stay bound to those at the same positions."""
-    hook_positions = _hook_positions(obj)
+    """While the block changes the object's vertices, its Hook modifiers stay bound to those at the same positions, as do
+    those of other objects with its mesh."""
+    hook_positions = {user: _hook_positions(user) for user in find_users(obj.data)}
     yield
-    _bind_hooks(obj, hook_positions)
+    for user, of_user in hook_positions.items():
+        _bind_hooks(user, of_user)
 
 
 def _hook_positions(obj: bpy.types.Object) -> dict[str, set[tuple[float, ...]]]:
