@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What an artist has marked on a mesh becomes borders of parts."""
 
+from pathlib import Path
+import tempfile
+
 import bmesh
 import bpy
 import numpy
@@ -168,6 +171,34 @@ class Collecting(MarksTest):
                 is_right = numpy.array(self.is_right(obj))
                 self.assertTrue(numpy.allclose(colors[~is_right], expected[0]) and numpy.allclose(colors[is_right], expected[1]),
                                 (colors[0], colors[-1]))
+
+    def test_each_tile_of_a_texture_has_its_own_colors(self):
+        """In files, packed, and where there is no file: white, as outside of all tiles."""
+        tiles = {1001: (1, 0, 0, 1), 1002: (0, 1, 0, 1), 1012: (0, 0, 1, 1)}
+        with tempfile.TemporaryDirectory() as directory:
+            for name in ("<UDIM>", "<UVTILE>"):
+                image = bpy.data.images.new("tiles", 2, 2, tiled=True)
+                for number, color in tiles.items():
+                    tile = bpy.data.images.new("tile", 2, 2)
+                    tile.pixels = color * 4
+                    tile.filepath_raw = str(Path(directory) / {"<UDIM>": f"{number}.png", "<UVTILE>": (
+                        f"u{(number - 1001) % 10 + 1}_v{(number - 1001) // 10 + 1}.png")}[name])
+                    tile.save()
+                image.filepath = str(Path(directory) / f"{name}.png")
+                for number in (1002, 1012, 1013):
+                    image.tiles.new(number)
+                image.reload()
+                coordinates = numpy.array([(0.5, 0.5), (1.5, 0.5), (1.5, 1.5), (2.5, 1.5), (0.5, 1.5), (-0.5, 0.5)])
+                expected = [*tiles.values(), *[(1, 1, 1, 1)] * 3]
+                before = len(bpy.data.images)
+                for packs in (False, True):
+                    if packs:
+                        image.pack()
+                        for path in Path(directory).iterdir():
+                            path.unlink()
+                    colors = part("mesh.marks")._sample_image(image, coordinates)
+                    self.assertEqual(colors.tolist(), numpy.array(expected, float).tolist(), f"{name} {packs}")
+                self.assertEqual(len(bpy.data.images), before)
 
     def test_a_mesh_without_marks_has_none(self):
         self.assertEqual(self.collect(self.add(*BOX)), {})

@@ -78,6 +78,13 @@ class Operators(MeshTest):
                 self.assertNotIn("context is incorrect", str(raised.exception))
         self.assertGreater(len(refused), 25)
 
+    def test_linked_objects_are_not_placed(self):
+        """A script could move them, but undo and the file would not have that. Local objects with a linked mesh move."""
+        linked = self.linked(self.add(*BOX))
+        self.assertFalse(bpy.ops.object.partwheel_place.poll())
+        self.link(bpy.data.objects.new("local", linked.data))
+        self.assertTrue(bpy.ops.object.partwheel_place.poll())
+
     def test_picking_without_an_object_says_why(self):
         for prepare in (self.nothing, self.lamp):
             prepare()

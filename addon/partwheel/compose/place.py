@@ -4,7 +4,7 @@
 import bpy
 from mathutils import Vector
 
-from ..mesh import Refused, check_poll, find_object, report_errors, resolve_object
+from ..mesh import Refused, check_poll, find_object, read_only_reason, report_errors, resolve_object
 from ..solid import composition
 from ..view import keys
 from . import placement
@@ -36,8 +36,9 @@ class OBJECT_OT_partwheel_place(Adjusting, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
-        return check_poll(cls, context.mode == "OBJECT" and obj is not None and obj.type == "MESH",
-                          "In Object Mode, make the part that you want to place the active object.")
+        is_mesh = context.mode == "OBJECT" and obj is not None and obj.type == "MESH"
+        return (check_poll(cls, is_mesh, "In Object Mode, make the part that you want to place the active object.")
+                and check_poll(cls, not obj.library, read_only_reason(obj)))
 
     @report_errors
     def execute(self, context: bpy.types.Context) -> set[str]:

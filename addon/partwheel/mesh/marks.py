@@ -20,6 +20,7 @@ from .elements import read, read_attribute, read_edge_vertices, read_positions
 FACE_SET, CREASE = ".sculpt_face_set", "crease_edge"
 DRAWN_BORDER = "partwheel_border"  # 1 on the edges of borders drawn with the tool, see pick/draw_border.py
 COLOR_SOCKETS = "Base Color", "Color"  # of shaders
+FIRST_TILE = 1001  # number of the UDIM tile of texture coordinates from 0 to 1; there are ten in a row
 EDGE_STRENGTH = 0.8  # of seams, sharp edges and full creases, which may have other purposes than to divide
 
 
@@ -211,7 +212,43 @@ def _read_face_colors(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _sample_image(image: bpy.types.Image, coordinates: np.ndarray) -> np.ndarray:
-    """Return linear RGBA (..., 4) at texture coordinates (..., 2); white if the image can't be read."""
+    """Return linear RGBA (..., 4) at texture coordinates (..., 2); white where the image can't be read."""
+    if image.source != "TILED":
+        return _sample_picture(image, coordinates)
+    colors = np.ones((*coordinates.shape[:-1], 4))
+    column, row = np.moveaxis(np.floor(coordinates), -1, 0)
+    numbers = np.where((column >= 0) & (column < 10) & (row >= 0), FIRST_TILE + column + 10 * row, 0)
+    for number in (tile.number for tile in image.tiles):
+        if (is_in_tile := numbers == number).any():
+            with _open_tile(image, number) as picture:
+                colors[is_in_tile] = _sample_picture(picture, coordinates[is_in_tile])
+    return colors
+
+
+@contextmanager
+def _open_tile(image: bpy.types.Image, number: int) -> Iterator[bpy.types.Image]:
+    """Yield an image with the texels of a tile: Python can read only the first one of an image with several."""
+    if number == image.tiles[0].number:
+        yield image
+        return
+    data = next((file.packed_file.data for file in image.packed_files if file.tile_number == number), None)
+    picture = bpy.data.images.new("partwheel", 1, 1)
+    try:
+        if data is None:
+            path = bpy.path.abspath(image.filepath_raw, library=image.library)
+            row, column = divmod(number - FIRST_TILE, 10)
+            picture.filepath_raw = path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
+        else:
+            picture.pack(data=data, data_len=len(data))
+        picture.source = "FILE"
+        picture.colorspace_settings.name = image.colorspace_settings.name
+        yield picture
+    finally:
+        bpy.data.images.remove(picture)
+
+
+def _sample_picture(image: bpy.types.Image, coordinates: np.ndarray) -> np.ndarray:
+    """As _sample_image(), of an image that is one picture, which repeats."""
     width, height = image.size
     if not width * height:
         return np.ones((*coordinates.shape[:-1], 4))
