@@ -723,6 +723,23 @@ class ObjectData(SolidTest):
                 self.nothing_left_behind()
             self.setUp()
 
+    def test_parts_of_an_overridden_mesh_are_local(self):
+        """Blender copies an override as another one, whose geometry Python can't change."""
+        source, _ = self.built("dragknob")
+        self.keyed(source)
+        obj = self.linked(source).override_create(remap_local_usages=True)
+        obj.data.override_create(remap_local_usages=True)
+        self.assertTrue(obj.override_library and obj.data.override_library and obj.data.shape_keys)
+        self.link_active(obj)
+        hierarchy = part("api").build(obj)
+        api = part("api")
+        copy, *created = api.copy_part(obj, self.middle(hierarchy)), *api.split(obj, parts=3)
+        mirrored = api.place(obj, (0, 0, 100), target=copy, mirror=True)
+        for new in (copy, *created, mirrored):
+            self.assertFalse(new.override_library or new.data.override_library or new.data.library, new.name)
+            self.assertEqual(len(new.data.shape_keys.key_blocks), 3)
+            self.assertSolid(new.data)
+
     def in_overridden(self, obj, edited):
         hierarchy = part("api").build(obj)
         for operator, options in ((bpy.ops.mesh.partwheel_copy, {"node": self.middle(hierarchy), "snap": False}),

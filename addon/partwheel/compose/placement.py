@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
-from ..mesh import Refused, arrays, rollback_on_error
+from ..mesh import Refused, arrays, local_copy, rollback_on_error
 from ..solid.composition import create_object_like, update_matrices, world_to_local
 from partwheel import compatible
 from ..solid.solids import CAP_ATTRIBUTE
@@ -113,7 +113,7 @@ def place(part: bpy.types.Object, target: bpy.types.Object | None, pose: Pose,
 @rollback_on_error()
 def create_mirror_copy(part: bpy.types.Object, target: bpy.types.Object) -> bpy.types.Object:
     """A new object: the part mirrored across the target's YZ plane. The mesh is mirrored, not the matrix."""
-    mesh = part.data.copy()
+    mesh = local_copy(part.data)
     flip = Matrix.Scale(-1, 4, (1, 0, 0))
     new = create_object_like(part, mesh, part.name)
     reflection = target.matrix_world @ flip @ world_to_local(target)

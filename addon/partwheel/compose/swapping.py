@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..mesh import MeshSnapshot, Refused, arrays, find_object, remove_object, rollback_on_error
+from ..mesh import MeshSnapshot, Refused, arrays, find_object, local_copy, remove_object, rollback_on_error
 from ..parts import registry
 from ..solid import composition
 from ..solid.solids import CapOptions
@@ -104,7 +104,7 @@ class SwapTarget:
         obj, source = find_object(self.name), find_object(candidate.name)
         composition.update_matrices()
         if candidate.node is None:
-            name, mesh = source.name, source.data.copy()
+            name, mesh = source.name, local_copy(source.data)
         else:
             hierarchy = _candidate_hierarchy(candidate)
             name = f"{source.name} part"

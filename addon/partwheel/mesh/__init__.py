@@ -4,7 +4,7 @@
 
 from .arrays import Fingerprint
 from .computation import Computation, Steps, is_running, run_steps, start_thread
-from .datablocks import find_users, parse_json, remove_object, rename, rollback_on_error
+from .datablocks import find_users, local_copy, parse_json, remove_object, rename, rollback_on_error
 from .edit_mode import go_to_object_mode, return_to_mode
 from .errors import (NeedsActiveMesh, NeedsEditMode, Refused, check_poll, poll_in_modes, poll_is_editable,
                      read_only_reason, report_errors)

@@ -14,7 +14,7 @@ import numpy as np
 from . import arrays
 from .arrays import read, read_corner_vertices, write
 from partwheel.weld import is_welding
-from .datablocks import copy_animation, copy_settings, has_strips_without_action, rename
+from .datablocks import copy_animation, copy_settings, has_strips_without_action, local_copy, rename
 
 # Attribute type -> (field, dtype, width)
 _TYPES = {
@@ -77,7 +77,7 @@ class MeshPlan(NamedTuple):
 
 def assemble_mesh(mesh: bpy.types.Mesh, plan: MeshPlan, name: str, selection: bool) -> bpy.types.Mesh:
     """Return a new mesh by the plan, with the source's materials, settings, properties and, if wanted, selection."""
-    result = mesh.copy()
+    result = local_copy(mesh)
     rename(result, name)
     if result.shape_keys and not has_strips_without_action(result.shape_keys):
         clear_shape_keys(result)
@@ -272,7 +272,7 @@ def _copy_group_names(mesh: bpy.types.Mesh, result: bpy.types.Mesh) -> bool:
 def _copy_vertices_only(mesh: bpy.types.Mesh) -> bpy.types.Mesh:
     """Return a new mesh with the vertices and their layers only. Only Blender's own validation removes faces and edges
     quickly: those whose corners are all the same vertex."""
-    bare = mesh.copy()
+    bare = local_copy(mesh)
     if bare.shape_keys:
         clear_shape_keys(bare)
     write(bare.loops, "vertex_index", np.zeros(len(bare.loops), np.int32))

@@ -64,6 +64,17 @@ def rename(block: bpy.types.Object | bpy.types.Mesh, name: str) -> None:
     block.name = name
 
 
+def local_copy(block: bpy.types.Object | bpy.types.Mesh) -> bpy.types.Object | bpy.types.Mesh:
+    """Return a local copy, also of a library override, which Blender would copy as another override."""
+    if block.override_library and bpy.app.version < (4, 0, 0):  # which can't make an override local
+        new = block.override_library.reference.copy()
+        if isinstance(block, bpy.types.Object):
+            copy_settings(block, new, {"name", "data", "dimensions", "matrix_world", "matrix_local", "matrix_basis"})
+        return new
+    new = block.copy()
+    return new.make_local(clear_liboverride=True) if new.override_library else new
+
+
 def find_users(mesh: bpy.types.Mesh) -> list[bpy.types.Object]:
     """Return the objects that share the mesh."""
     return [obj for obj in bpy.data.objects if obj.data == mesh]

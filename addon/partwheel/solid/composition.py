@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..mesh import MeshSnapshot, Refused, arrays, assembly, find_users, rename, rollback_on_error
-from ..mesh.datablocks import copy_settings, copy_actions, redirect_drivers
+from ..mesh import MeshSnapshot, Refused, arrays, assembly, find_users, local_copy, rename, rollback_on_error
+from ..mesh.datablocks import copy_actions, redirect_drivers
 from ..pick import borders
 from ..translations.lookup import rpt_
 from . import solids
@@ -117,7 +117,7 @@ def create_object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
     it: parent, modifiers, constraints, animation, drivers, custom properties, material slots. In the object's
     collections; collection: in place of the first of them. Multires levels stay on whole polygons, see loss_messages()."""
     _remove_mirrored_caps(obj, mesh)
-    new = _local_copy(obj)
+    new = local_copy(obj)
     new.data = mesh
     rename(new, name)
     rename(mesh, new.name)  # in USD files an object has the name of its mesh
@@ -188,16 +188,6 @@ def _bind_hooks(obj: bpy.types.Object, hook_positions: dict[str, set[tuple[float
     for name, positions in hook_positions.items():
         obj.modifiers[name].vertex_indices_set([vertex.index for vertex in obj.data.vertices
                                                 if tuple(vertex.co) in positions])
-
-
-def _local_copy(obj: bpy.types.Object) -> bpy.types.Object:
-    """A local copy of the object, also of a library override, which Blender would copy as another override."""
-    if obj.override_library and bpy.app.version < (4, 0, 0):  # which can't make an override local
-        new = obj.override_library.reference.copy()
-        copy_settings(obj, new, {"name", "data", "dimensions", "matrix_world", "matrix_local", "matrix_basis"})
-        return new
-    new = obj.copy()
-    return new.make_local(clear_liboverride=True) if new.override_library else new
 
 
 def create_bare_object(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils.bvhtree import BVHTree
 
-from ..mesh import arrays, temporary_scene
+from ..mesh import arrays, local_copy, temporary_scene
 
 NO_FACE = -1
 SOURCE_FACE_ATTRIBUTE = "partwheel_origin"  # face index + 1; generated faces get 0
@@ -109,7 +109,7 @@ def _evaluate_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Ev
 def _temporary_copy(obj: bpy.types.Object) -> Iterator[tuple[bpy.types.Object, bpy.types.ViewLayer]]:
     """Yield (copy of the object as Object Mode evaluates it, with numbered faces; its view layer). Removed at the end."""
     arrays.flush_sculpt_strokes(obj)
-    mesh, copy = obj.data.copy(), obj.copy()
+    mesh, copy = local_copy(obj.data), obj.copy()
     try:
         copy.data = mesh
         numbers = arrays.ensure_attribute(mesh, SOURCE_FACE_ATTRIBUTE, "INT", "FACE")
