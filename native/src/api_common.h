@@ -41,7 +41,7 @@ struct pw_mesh : partwheel::TriangleMesh {};
 
 namespace partwheel {
 
-inline constexpr size_t max_struct_size = 4096;  // bytes; a larger struct_size was never set
+inline constexpr size_t max_struct_size = 4096;  // bytes; a caller who passes more has not set struct_size
 
 // Sets the error of this thread's last call. Allocates nothing, because memory may have run out.
 pw_status fail(pw_status status, const ErrorLocation& location, const char* format, const char* detail = "") noexcept;

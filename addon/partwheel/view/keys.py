@@ -49,13 +49,13 @@ MOVES = frozenset({"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"})
 
 WAITING = (CLICK, NAVIGATE, CANCEL)
 COMPUTING = (NAVIGATE, CANCEL._replace(icons=("EVENT_ESC",)))
-# After a pick; COMMANDS and ENDS follow: as many as fit in a window 1280 pixels wide.
+# After a pick. COMMANDS and ENDS are shown after these, as many as fit in a window that is 1280 pixels wide.
 PICKED = (RESIZE, NUMBER._replace(label="Part"), SNAP_BORDER)
 # With the toolbar's tool: a click picks the next part, and digits are passed on to Blender.
 TOOL_PICKED = (RESIZE, CLICK._replace(label="Next Part"), SNAP_BORDER)
 # The same while the mouse is away from the click, where the wheel zooms.
 TOOL_PICKED_AWAY = (RESIZE._replace(names="↑↓"), *TOOL_PICKED[1:])
-ENDS = (CONFIRM, CANCEL)  # with the tool only the second: any other action confirms
+ENDS = (CONFIRM, CANCEL)  # with the tool only CANCEL: any other action confirms
 # Shift, Ctrl and a letter that no keymap of Blender uses in Edit Mode.
 COMMANDS = (
     Command("mesh.partwheel_deform", "D", "Drag", {"method": "RIGID"}),
