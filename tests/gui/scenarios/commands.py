@@ -41,9 +41,8 @@ def play(stage):
     n_faces = len(stage.object.data.polygons)
     stage.check(n_faces != snapped, f"its border is another ({n_faces} faces, {snapped} with it snapped)")
     stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("one undo step takes the copy away", lambda: len(bpy.data.objects) == 1)
-    stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("the one before left Edit Mode", lambda: stage.object.mode == "EDIT")
+    yield from stage.until("one undo step takes the copy away, and is back in Edit Mode",
+                           lambda: len(bpy.data.objects) == 1 and stage.object.mode == "EDIT")
     yield from stage.selected(part, "there")
 
     yield from stage.open("homer")

@@ -17,15 +17,12 @@ def play(stage):
     yield from stage.until("the copy is there, in Object Mode",
                            lambda: stage.object != hand and stage.object.mode == "OBJECT")
     stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("one undo step takes the copy away, in Object Mode",
-                           lambda: len(bpy.data.objects) == 1 and stage.object.mode == "OBJECT")
-    stage.mouse.key("Z", ctrl=True)
-    yield from stage.until("the next one is back in Edit Mode", lambda: stage.object.mode == "EDIT")
+    yield from stage.until("one undo step takes the copy away, and is back in Edit Mode",
+                           lambda: len(bpy.data.objects) == 1 and stage.object.mode == "EDIT")
     stage.check(len(stage.selection()) == count, "with the part selected")
     stage.mouse.key("Z", ctrl=True, shift=True)
-    yield from stage.until("redo: Object Mode", lambda: stage.object.mode == "OBJECT")
-    stage.mouse.key("Z", ctrl=True, shift=True)
-    yield from stage.until("and redo brings it again", lambda: stage.object.name == "hand part")
+    yield from stage.until("and redo brings it again, in Object Mode",
+                           lambda: stage.object.name == "hand part" and stage.object.mode == "OBJECT")
     hand, part = bpy.data.objects["hand"], stage.object
     border = abs((~caps(part)).sum() - count)
     stage.check(border < 0.25 * count, "the copy has the part's faces, but for its border, which goes to creases")
