@@ -125,7 +125,7 @@ class MESH_OT_partwheel_swap(Adjusting, PartOperator, bpy.types.Operator):
 
     def on_confirm(self, context: bpy.types.Context) -> set[str]:
         previews.remove_previews()
-        if self.was_edited:
+        if self.was_edited:  # undo must return to Edit Mode
             bpy.ops.object.mode_set(mode="EDIT")
             go_to_object_mode(context.active_object)
         try:

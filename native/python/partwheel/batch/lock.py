@@ -68,8 +68,7 @@ class Lock:
 
     def _files(self) -> List[Tuple[int, Path]]:
         """(number, path) of the lock's files, sorted."""
-        numbers = ((path.name[len(self._name) + 1:], path) for path in self._folder.glob(f"{self._name}.*"))
-        return sorted((int(number), path) for number, path in numbers if number.isdigit())
+        return [(number, path) for name, number, path in _lock_files(self._folder, self._name) if name == self._name]
 
     def _newest(self) -> Tuple[int, Optional[Path]]:
         files = self._files()
@@ -107,12 +106,14 @@ class Lock:
 
 def held_locks(folder: Union[str, Path]) -> Set[str]:
     """The names of the locks in a folder that live processes hold."""
-    newest: Dict[str, int] = {}
-    for path in Path(folder).glob("*.*"):
-        name, number = path.name.rsplit(".", 1)
-        if number.isdigit():
-            newest[name] = max(newest.get(name, 0), int(number))
-    return {name for name, number in newest.items() if _live_owner(Path(folder) / f"{name}.{number}")}
+    newest = {name: path for name, _, path in _lock_files(Path(folder))}
+    return {name for name, path in newest.items() if _live_owner(path)}
+
+
+def _lock_files(folder: Path, prefix: str = "*") -> List[Tuple[str, int, Path]]:
+    """(name of the lock, number, path) of the files of a folder's locks whose names start with the prefix, sorted."""
+    files = ((path.name.rsplit(".", 1), path) for path in folder.glob(f"{prefix}.*"))
+    return sorted((name, int(number), path) for (name, number), path in files if number.isdigit())
 
 
 def _machine_id() -> Optional[str]:

@@ -14,7 +14,7 @@ from ..library import Context, Error
 from ..rays import RayTarget
 from ..requirements import load_module
 from ..separation import separate
-from ..triangles import doubled_area_vectors, sample_triangles, triangle_areas, unit_vectors
+from ..triangles import doubled_area_vectors, sample_triangles, unit_vectors
 from .beds import place_on_beds
 from .borders import ParentLink, parents_first, part_tree
 from .cut import Cut
@@ -133,7 +133,8 @@ def wall_thickness(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(n,) thickness of a solid's walls at WALL_SAMPLES evenly distributed points of its surface, wound outward: the distance
     straight through to a surface that faces the other way. Points without one, as at edges, are left out."""
     corners = vertices[triangles]
-    normals, areas = unit_vectors(doubled_area_vectors(corners)), triangle_areas(corners)
+    vectors = doubled_area_vectors(corners)
+    normals, areas = unit_vectors(vectors), np.linalg.norm(vectors, axis=1) / 2
     target, thicknesses = RayTarget(vertices, triangles), []
     for point, triangle in zip(*sample_triangles(corners, areas, WALL_SAMPLES)):
         hit = target.first_hit(point, -normals[triangle], 1e-6 * np.sqrt(2 * areas.sum()))
