@@ -193,9 +193,13 @@ class CutResults(PartsCase):
         part("api").write(obj, cut, {"COLORS"})
         self.assertNotIn(own, list(obj.data.materials))
         self.assertEqual(tuple(own.diffuse_color), before)
-        first = obj.data.materials[1]
+        first = list(obj.data.materials)
         part("api").write(obj, cut, {"COLORS"})
-        self.assertEqual(obj.data.materials[1], first)
+        self.assertEqual(list(obj.data.materials), first)
+        first[0].name = "renamed"
+        part("api").write(obj, cut, {"COLORS"})
+        self.assertNotIn(first[0], list(obj.data.materials))
+        self.assertEqual(list(obj.data.materials)[1:], first[1:])
 
     @only_in("newest")
     def test_objects_are_closed_and_make_the_whole(self):

@@ -7,7 +7,7 @@ import numpy as np
 from ..mesh import FACE_SET, Refused, arrays, find_users
 from partwheel.cut import Cut, colors
 
-MATERIAL_PROPERTY = "partwheel_color"  # marks materials that write_colored_materials() has created, and may change
+MATERIAL_PROPERTY = "partwheel_color"  # the name for which write_colored_materials() has created a material, and may change it
 GROUPS_PROPERTY = "partwheel_groups"  # mesh property: names of the vertex groups that write_vertex_groups() has created
 
 
@@ -71,11 +71,13 @@ def write_material_slots(obj: bpy.types.Object, cut: Cut, _names: list[str]) -> 
 
 
 def _colored_material(name: str, color: np.ndarray) -> bpy.types.Material:
-    """The material of this name that this function created earlier, or a new one, with this sRGB color (3,)."""
-    material = bpy.data.materials.get((name, None))
-    if not material or MATERIAL_PROPERTY not in material:
+    """The material that this function created earlier for this name, and nobody has renamed, or a new one, with this sRGB
+    color (3,). Its own name differs by a number if a material of the user has the name."""
+    material = next((material for material in bpy.data.materials if not material.library
+                     and material.get(MATERIAL_PROPERTY) == name and material.name.startswith(name)), None)
+    if not material:
         material = bpy.data.materials.new(name)
-        material[MATERIAL_PROPERTY] = True
+        material[MATERIAL_PROPERTY] = name
     material.diffuse_color = *color, 1
     material.use_nodes = True
     for node in material.node_tree.nodes:
