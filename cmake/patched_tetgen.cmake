@@ -46,6 +46,12 @@ patch(tetgen_source "(      // Search the edge torg->tdest[.]\n)"
       }
 " "${consequence}")
 
+# Makes it leave flat tetrahedra as they are where removing them takes too long: it flips edges to be able to flip others.
+set(consequence "improving might not end")
+patch(tetgen_source "(void tetgenmesh::improve_mesh[(][)]\n{\n)" "\\1  partwheel_tetgen_begin_improving();\n" "${consequence}")
+patch(tetgen_source "if [(](repair_tet[(])" "if (!partwheel_tetgen_must_end_improving() \&\& \\1" "${consequence}")
+patch(tetgen_source "[(]level < b->fliplinklevel[)]" "\\0 \&\& !partwheel_tetgen_must_end_improving()" "${consequence}")
+
 # tetgen_host.h replaces functions by macros. It must replace all functions that TetGen calls and whose last bits differ
 # between systems, except pow: TetGen calls it only for volume limits, and we set none.
 file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/../native/src/fill/tetgen_host.h" replaced REGEX "^#define [a-z0-9]+ partwheel_tetgen_")

@@ -1,9 +1,9 @@
 // The build includes this before all of TetGen's code. It replaces printf and std::cerr, because TetGen prints even in
 // quiet mode, and rand and srand, because other threads of the host may draw from the C library's generator. The build
 // also replaces orient3d(): its calls are the steps of TetGen, which must be counted, because it may not terminate. And
-// it adds calls of partwheel_tetgen_poll(), which checks for cancellation. acos, cos and log are replaced because their
-// last bits differ between systems; cmake/patched_tetgen.cmake checks that TetGen calls no other such function. The
-// functions are in tetrahedra.cpp.
+// it adds calls of partwheel_tetgen_poll(), which checks for cancellation, and of those that limit the improvement of
+// tetrahedra. acos, cos and log are replaced because their last bits differ between systems; cmake/patched_tetgen.cmake
+// checks that TetGen calls no other such function. The functions are in tetrahedra.cpp.
 #pragma once
 
 #include <math.h>
@@ -17,6 +17,8 @@ int partwheel_tetgen_printf(const char* format, ...);
 int partwheel_tetgen_rand();
 void partwheel_tetgen_srand(unsigned seed);
 void partwheel_tetgen_poll();
+void partwheel_tetgen_begin_improving();
+bool partwheel_tetgen_must_end_improving();
 double partwheel_tetgen_acos(double cosine);
 double partwheel_tetgen_cos(double angle);
 double partwheel_tetgen_log(double x);
