@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The operator Convex Parts: hulls for engines, as children; and as the shape of a body that Blender lets fall."""
 
+import math
+
 import bmesh
 import bpy
 import numpy as np
@@ -135,6 +137,9 @@ class ConvexParts(MeshTest):
                 scaled.scale = scale
                 self.assertEqual([words in problem for problem in problems()], [True])
                 scaled.scale = 1, 1, 1
+        parent.scale, obj.rotation_euler.z = (2, 1, 2.5 ** 0.5), math.pi / 4  # sheared; all axes have the same length
+        self.assertEqual(["differs between axes" in problem for problem in problems()], [True])
+        parent.scale, obj.rotation_euler.z = (1, 1, 1), 0
         hull = obj.children[0]
         hull.data.flip_normals()
         self.assertIn("inward", problems()[0])

@@ -37,7 +37,7 @@ def check_hulls(obj: bpy.types.Object) -> list[str]:
 
 def _find_problems(obj: bpy.types.Object, children: list[bpy.types.Object], hierarchy: Hierarchy | None) -> list[str]:
     problems = []
-    scale = np.linalg.norm(np.array(obj.matrix_world)[:3, :3], axis=0)
+    scale = np.linalg.svd(np.array(obj.matrix_world)[:3, :3], compute_uv=False)  # also where a stretched parent shears it
     if np.linalg.det(np.array(obj.matrix_world)[:3, :3]) < 0:
         problems.append(rpt_("{name} is mirrored. Apply its scale (Object > Apply > Scale).").format(name=obj.name))
     elif np.ptp(scale) > TOLERANCE * scale.max():

@@ -23,7 +23,7 @@ def plan_print(context: bpy.types.Context, obj: bpy.types.Object, cut: Cut, know
     if not importlib.util.find_spec("manifold3d"):
         raise Refused("Printing needs the Python package manifold3d, and Partwheel has none for Python {version}. To install it, "
                       "run: {python} -m pip install manifold3d.", python=sys.executable, version=sys.version.split()[0])
-    scales = np.linalg.norm(np.array(obj.matrix_world.to_3x3()), axis=0)
+    scales = np.linalg.svd(np.array(obj.matrix_world.to_3x3()), compute_uv=False)  # also where a stretched parent shears it
     if np.ptp(scales) > MAX_SCALE_DIFFERENCE * scales.max():
         raise Refused("The scale of {name} is not uniform: apply its scale first.", name=obj.name)
     scale = float(scales.mean()) * context.scene.unit_settings.scale_length * MILLIMETERS_PER_METER
