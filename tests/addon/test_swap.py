@@ -3,6 +3,7 @@
 another library says, one operator does it all, and what is refused changes nothing."""
 
 import bpy
+import numpy
 from common import only_in, part
 from mathutils import Matrix
 from solid_case import SolidTest, arrays, volume
@@ -60,6 +61,27 @@ class Swap(SolidTest):
             self.assertGreater(first.score, 0.99)
             copy = place.create_stand_in(first, swapping.Adjustment(depth=-part("compose.placement").SINK_FRACTION))
             self.assertIdentity(copy.matrix_world, 1e-4 * max(model.dimensions))
+
+    @only_in("oldest", "newest")
+    def test_a_part_of_a_sheared_object_keeps_its_shape(self):
+        """Of an object that is turned in a stretched parent: all distances within the part change by one factor."""
+        swapping, solid = part("compose.swapping"), part("solid.solids")
+        model, hierarchy, giver, other = self.two_models()
+        giver.parent = self.link(bpy.data.objects.new("stretched", None))
+        giver.parent.scale = 1, 2, 3
+        bpy.context.view_layer.update()
+        place = swapping.SwapTarget(model, hierarchy, limb(model, hierarchy, 0, 1))
+        offer = place.find_candidates([giver])[0]
+        stand_in = place.create_stand_in(offer)
+        place.move_stand_in(stand_in, offer, swapping.Adjustment(angle=1, scale=2))
+        bpy.context.view_layer.update()
+        mesh = part("solid.composition").create_part_mesh(giver, other, offer.node, solid.CapOptions(), place.snap)
+
+        def distances(matrix, mesh):
+            places = [matrix @ vertex.co for vertex in mesh.vertices]
+            return numpy.array([(one - another).length for one, another in zip(places, places[1:])])
+        factors = distances(stand_in.matrix_world, stand_in.data) / distances(giver.matrix_world, mesh)
+        self.assertLess(numpy.ptp(factors), 1e-3 * factors.max())
 
     @only_in("newest")
     def test_volume_by_inclusion_and_exclusion(self):

@@ -122,7 +122,7 @@ class SwapTarget:
         if key not in self._fits:
             self._fits[key] = compatible.fit(self.shape, shape, adjustment.mirror).matrix
         depth = adjustment.depth + compatible.gap(self.shape, shape, self._fits[key])
-        start = Matrix(self._fits[key]) @ find_object(candidate.name).matrix_world
+        start = Matrix(self._fits[key]) @ composition.without_shear(find_object(candidate.name).matrix_world)
         new.matrix_world = placement.placement_matrix(start, loop, Vector(loop.center), -Vector(loop.normal),
                                                       adjustment.scale, adjustment.angle, depth)
 

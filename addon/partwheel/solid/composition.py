@@ -18,6 +18,7 @@ from partwheel import Hierarchy
 
 HULL_PROPERTY = "partwheel_hull"  # marks objects that Convex Parts replaces; copies of them don't get it
 # Modifier type -> its property that says whether it is bound to the vertices of a mesh. Copies have other vertices.
+_MAX_ROUNDING = 1e-5  # of a matrix that a transform can hold, relative to its largest number
 _BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CORRECTIVE_SMOOTH": "is_bind",
                     "LAPLACIANDEFORM": "is_bind"}
 
@@ -192,11 +193,20 @@ def _bind_hooks(obj: bpy.types.Object, hook_positions: dict[str, set[tuple[float
 
 def create_bare_object(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
                        collection: bpy.types.Collection) -> bpy.types.Object:
-    """A new object with this mesh and the object's transform, and nothing else of it."""
+    """A new object with this mesh and the object's transform, and nothing else of it. Shear goes into the mesh."""
     new = bpy.data.objects.new(name, mesh)
     collection.objects.link(new)
-    new.matrix_world = obj.matrix_world
+    new.matrix_world = without_shear(obj.matrix_world)
+    if new.matrix_world != obj.matrix_world:
+        mesh.transform(new.matrix_world.inverted_safe() @ obj.matrix_world, shape_keys=True)
     return new
+
+
+def without_shear(matrix: Matrix) -> Matrix:
+    """What location, rotation and scale can hold of a matrix, which a stretched parent may have sheared."""
+    held = Matrix.LocRotScale(*matrix.decompose())
+    is_sheared = np.abs(np.subtract(held, matrix)).max() > _MAX_ROUNDING * np.abs(matrix).max()
+    return held if is_sheared else matrix
 
 
 def loss_messages(obj: bpy.types.Object) -> list[str]:
