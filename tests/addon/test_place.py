@@ -4,6 +4,7 @@
 import math
 
 import bpy
+import numpy as np
 from common import part
 from mathutils import Matrix, Vector
 from solid_case import SolidTest, volume
@@ -69,6 +70,26 @@ class Place(SolidTest):
         self.assertEqual(bpy.ops.object.partwheel_unite(), {"FINISHED"})
         self.assertSolid(obj.data)
         self.assertLess(abs(volume(obj.data) / whole - 1), 0.05)
+
+    def test_a_part_in_a_stretched_parent_keeps_its_shape(self):
+        obj, _, _, copy = self.copied()
+        copy.parent = self.link(bpy.data.objects.new("stretched", None))
+        copy.parent.scale = 1, 2, 3
+        bpy.context.view_layer.update()
+
+        def distances(part):
+            places = [part.matrix_world @ vertex.co for vertex in part.data.vertices]
+            return np.array([(one - another).length for one, another in zip(places, places[1:])])
+        before, transform = distances(copy), part("compose.placement").local_transform(copy)
+        for angle in (0.5, 2):
+            self.place(copy, target=obj.name, location=(1, 2, 3), normal=(1, 1, 1), angle=angle, scale=2, mirror=True)
+            mirrored = next(other for other in bpy.context.selected_objects if other != copy)
+            for placed in (copy, mirrored):
+                factors = distances(placed) / before
+                self.assertLess(np.ptp(factors), 1e-3 * factors.max())
+            before = distances(copy)
+        part("compose.placement").restore_transform(copy, transform)
+        self.assertEqual(part("compose.placement").local_transform(copy), transform)
 
     def test_mirror_copy(self):
         obj, _, _, copy = self.copied()

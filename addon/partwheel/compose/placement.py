@@ -8,7 +8,7 @@ import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
 from ..mesh import Refused, arrays, local_copy, rollback_on_error
-from ..solid.composition import create_object_like, update_matrices, world_to_local
+from ..solid.composition import create_object_like, differ_by_rounding, update_matrices, world_to_local
 from partwheel import compatible
 from ..solid.solids import CAP_ATTRIBUTE
 
@@ -82,15 +82,25 @@ def move_to_pose(part: bpy.types.Object, start: Matrix, part_loop: compatible.Ca
             raise Refused("{name} has no border to fit: no part was removed from it.", name=target.name)
         location, normal = Vector(target_loop.center), Vector(target_loop.normal)
         scale *= target_loop.radius / part_loop.radius
-    part.matrix_world = placement_matrix(start, part_loop, location, normal, scale, pose.angle, pose.depth)
+    _set_world_matrix(part, placement_matrix(start, part_loop, location, normal, scale, pose.angle, pose.depth))
 
 
-def local_transform(obj: bpy.types.Object) -> dict[str, tuple[float, ...]]:
-    """The object's location, rotation and scale, for restore_transform()."""
-    return {channel: tuple(getattr(obj, channel)) for channel in _CHANNELS}
+def _set_world_matrix(obj: bpy.types.Object, matrix: Matrix) -> None:
+    """What the object's own transform can't hold, because a stretched parent would shear it, goes to the parent inverse."""
+    obj.matrix_world = matrix
+    if obj.parent and obj.parent_type == "OBJECT":
+        in_parent = obj.parent.matrix_world.inverted_safe() @ matrix
+        if not differ_by_rounding(obj.matrix_parent_inverse @ obj.matrix_basis, in_parent):
+            obj.matrix_parent_inverse = in_parent @ obj.matrix_basis.inverted_safe()
 
 
-def restore_transform(obj: bpy.types.Object, transform: dict[str, tuple[float, ...]]) -> None:
+def local_transform(obj: bpy.types.Object) -> dict[str, tuple[float, ...] | Matrix]:
+    """The object's location, rotation and scale, and its parent inverse, for restore_transform()."""
+    return {"matrix_parent_inverse": obj.matrix_parent_inverse.copy(),
+            **{channel: tuple(getattr(obj, channel)) for channel in _CHANNELS}}
+
+
+def restore_transform(obj: bpy.types.Object, transform: dict[str, tuple[float, ...] | Matrix]) -> None:
     """Restores the object's transform exactly. A matrix would lose full turns, mirrored axes and the last bit."""
     for channel, values in transform.items():
         setattr(obj, channel, values)
@@ -120,5 +130,5 @@ def create_mirror_copy(part: bpy.types.Object, target: bpy.types.Object) -> bpy.
     # Two reflections make a rotation: the matrix contains no reflection.
     mesh.transform(flip, shape_keys=True)
     mesh.flip_normals()
-    new.matrix_world = reflection @ part.matrix_world @ flip
+    _set_world_matrix(new, reflection @ part.matrix_world @ flip)
     return new

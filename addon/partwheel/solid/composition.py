@@ -18,7 +18,7 @@ from partwheel import Hierarchy
 
 HULL_PROPERTY = "partwheel_hull"  # marks objects that Convex Parts replaces; copies of them don't get it
 # Modifier type -> its property that says whether it is bound to the vertices of a mesh. Copies have other vertices.
-_MAX_ROUNDING = 1e-5  # of a matrix that a transform can hold, relative to its largest number
+_MAX_ROUNDING = 1e-5  # of matrices, relative to their largest number
 _BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CORRECTIVE_SMOOTH": "is_bind",
                     "LAPLACIANDEFORM": "is_bind"}
 
@@ -205,8 +205,11 @@ def create_bare_object(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str,
 def without_shear(matrix: Matrix) -> Matrix:
     """What location, rotation and scale can hold of a matrix, which a stretched parent may have sheared."""
     held = Matrix.LocRotScale(*matrix.decompose())
-    is_sheared = np.abs(np.subtract(held, matrix)).max() > _MAX_ROUNDING * np.abs(matrix).max()
-    return held if is_sheared else matrix
+    return matrix if differ_by_rounding(held, matrix) else held
+
+
+def differ_by_rounding(one: Matrix, other: Matrix) -> bool:
+    return np.abs(np.subtract(one, other)).max() <= _MAX_ROUNDING * np.abs(other).max()
 
 
 def loss_messages(obj: bpy.types.Object) -> list[str]:
