@@ -71,6 +71,14 @@ class SolidTest(MeshTest):
         self.assertEqual({vertex for pair in directed for vertex in pair}, set(range(len(mesh.vertices))))
         self.assertFalse(mesh.validate())
 
+    def assertSameShape(self, mesh, matrix, other_mesh, other_matrix):
+        """Moved by their matrices, two meshes with the same vertices differ by one factor: in all distances of neighbors."""
+        def distances(mesh, matrix):
+            places = numpy.array([matrix @ vertex.co for vertex in mesh.vertices])
+            return numpy.linalg.norm(numpy.diff(places, axis=0), axis=1)
+        factors = distances(mesh, matrix) / distances(other_mesh, other_matrix)
+        self.assertLess(numpy.ptp(factors), 1e-3 * factors.max())
+
     def built(self, name="dragknob"):
         if name == "torus":  # of quads that are not flat
             bpy.ops.mesh.primitive_torus_add(major_segments=24, minor_segments=10)

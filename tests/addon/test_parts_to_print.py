@@ -126,8 +126,12 @@ class Print(PartsCase):
             bpy.ops.mesh.partwheel_parts(to={"PRINT", "FACE_SETS"})
         self.assertEqual((len(bpy.data.objects), len(bpy.data.collections)), before)
         self.assertIsNone(part("api").load_cut(obj))
+        obj.scale.x *= 2
+        bpy.context.view_layer.update()
+        with self.assertRaisesRegex(RuntimeError, "scale"):
+            bpy.ops.mesh.partwheel_parts(to={"PRINT"})
 
-    def test_a_stretched_object_is_refused(self):
+    def test_an_object_in_a_stretched_parent_is_refused(self):
         obj, _ = self.sized("homer")
         obj.rotation_euler = 0, 0, numpy.pi / 4
         obj.parent = bpy.data.objects.new("parent", None)

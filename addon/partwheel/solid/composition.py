@@ -17,8 +17,8 @@ from . import solids
 from partwheel import Hierarchy
 
 HULL_PROPERTY = "partwheel_hull"  # marks objects that Convex Parts replaces; copies of them don't get it
-# Modifier type -> its property that says whether it is bound to the vertices of a mesh. Copies have other vertices.
 _MAX_ROUNDING = 1e-5  # of matrices, relative to their largest number
+# Modifier type -> its property that says whether it is bound to the vertices of a mesh. Copies have other vertices.
 _BIND_PROPERTIES = {"SURFACE_DEFORM": "is_bound", "MESH_DEFORM": "is_bound", "CORRECTIVE_SMOOTH": "is_bind",
                     "LAPLACIANDEFORM": "is_bind"}
 
@@ -209,7 +209,7 @@ def without_shear(matrix: Matrix) -> Matrix:
 
 
 def differ_by_rounding(one: Matrix, other: Matrix) -> bool:
-    return np.abs(np.subtract(one, other)).max() <= _MAX_ROUNDING * np.abs(other).max()
+    return np.allclose(one, other, rtol=0, atol=_MAX_ROUNDING * np.abs(other).max())
 
 
 def loss_messages(obj: bpy.types.Object) -> list[str]:
